@@ -24,8 +24,8 @@ std::string number_or_dash(const std::optional<double>& value, double factor = 1
 }
 
 /// The number of a mesh in the table, from 1.
-std::size_t number_of(const LadderMesh& mesh, const Choice& choice) {
-  const auto is = [&](const LadderMesh& other) { return &other == &mesh; };
+std::size_t number_of(const CandidateMesh& mesh, const Choice& choice) {
+  const auto is = [&](const CandidateMesh& other) { return &other == &mesh; };
   const auto found = std::find_if(choice.meshes.begin(), choice.meshes.end(), is);
   return static_cast<std::size_t>(found - choice.meshes.begin()) + 1;
 }
@@ -73,10 +73,11 @@ std::string meshes_text(const Choice& choice) {
 }
 
 std::string row_text(const Attempt& attempt, const Choice& choice) {
-  const auto& [rung, cost, evaluation, outcome] = attempt;
+  const auto& [candidate, cost, evaluation, outcome] = attempt;
   return fmt::format(
-      "{} {:<44}{:>4}{:>9}{:>9}{:>9}{:>8}{:>9}{:>6}\n", outcome == Outcome::chosen ? '>' : ' ', name_of(rung),
-      number_of(*rung.mesh, choice), cost ? fmt::format("{:.3g}", 1e6 * cost->seconds) : "-",
+      "{} {:<44}{:>4}{:>9}{:>9}{:>9}{:>8}{:>9}{:>6}\n", outcome == Outcome::chosen ? '>' : ' ',
+      name_of(candidate), number_of(*candidate.mesh, choice),
+      cost ? fmt::format("{:.3g}", 1e6 * cost->seconds) : "-",
       number_or_dash(cost ? cost->mean_step : std::nullopt, 1e3),
       number_or_dash(cost ? cost->per_simulated_second() : std::nullopt),
       evaluation.per_simulated_second ? fmt::format("{:.2g}", *evaluation.per_simulated_second) : "-",
@@ -112,7 +113,7 @@ std::string summary(const Rejected& group) {
   std::vector<std::string> methods;
   std::vector<double> errors;
   for (const Attempt* attempt : group.attempts) {
-    const auto& choice = attempt->rung.choice;
+    const auto& choice = attempt->candidate.choice;
     const std::string method =
         choice.kappa ? fmt::format("{} kappa {:.2g}", choice.method, *choice.kappa) : choice.method;
     if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
@@ -128,7 +129,7 @@ std::string summary(const Rejected& group) {
   return line(text, 4);
 }
 
-std::string rungs_text(const Choice& choice) {
+std::string candidates_text(const Choice& choice) {
   std::string text = fmt::format("  {:<44}{:>4}{:>9}{:>9}{:>9}{:>8}{:>9}{:>6}\n", "method and numbers",
                                  "mesh", "us/step", "step ms", "s/sim. s", "run s", "error %", "det F");
   for (const auto& attempt : choice.attempts) {
@@ -156,16 +157,16 @@ std::string rungs_text(const Choice& choice) {
 }  // namespace
 
 std::string choose_table(const Scene& scene, const Choice& choice) {
-  std::string text = head_text(scene, choice) + meshes_text(choice) + rungs_text(choice);
+  std::string text = head_text(scene, choice) + meshes_text(choice) + candidates_text(choice);
   for (const auto& remark : remarks(choice)) text += line("note: " + remark);
   if (!choice.chosen) return text;
   const Attempt& chosen = choice.attempts[*choice.chosen];
   if (!chosen.cost->remark.empty()) text += line("note: " + chosen.cost->remark);
   const bool itself = *chosen.evaluation.error == 0.0;
   return text +
-         line(fmt::format("choose {}, {}: {} at most{}, {} s for a simulated second", name_of(chosen.rung),
-                          chosen.rung.mesh->name(), percent(*chosen.evaluation.error),
-                          itself ? ", as it is the reference itself" : "",
+         line(fmt::format("choose {}, {}: {} at most{}, {} s for a simulated second",
+                          name_of(chosen.candidate), chosen.candidate.mesh->name(),
+                          percent(*chosen.evaluation.error), itself ? ", as it is the reference itself" : "",
                           number_or_dash(chosen.cost->per_simulated_second())));
 }
 

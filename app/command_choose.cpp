@@ -47,8 +47,9 @@ double parse_budget(const std::string& text) {
 }
 
 void write_chosen(const Case& description, const Choice& choice, const std::string& output) {
-  const Rung& rung = choice.attempts[*choice.chosen].rung;
-  write_text_file(output, case_text(description, rung.choice, rung.mesh->problem.description, output));
+  const Candidate& candidate = choice.attempts[*choice.chosen].candidate;
+  write_text_file(output,
+                  case_text(description, candidate.choice, candidate.mesh->problem.description, output));
   fmt::print("wrote {}\n", output);
 }
 

@@ -62,7 +62,7 @@ Limit parse_limit(const std::string& text) {
 
 /// The answer of the mean-dilatation element, for cases without a stored golden. Throws ComputationError if
 /// there is none.
-Displacements twin_of(const Scene& scene) {
+Displacements mean_dilatation_answer(const Scene& scene) {
   Observer silent;
   Answer answer = compute_answer(scene, {.method = std::string(golden_method)}, silent);
   if (answer.refused || answer.failure) {
@@ -95,7 +95,8 @@ Verdict score(const Scene& scene, const ScoreOptions& options) {
   if (references.golden) {
     verdict.finding = finding_of(scene, references, answer);
   } else {
-    verdict.twin = accuracy_of(scene, references.comparison, answer, twin_of(scene));
+    verdict.mean_dilatation =
+        accuracy_of(scene, references.comparison, answer, mean_dilatation_answer(scene));
   }
   return verdict;
 }
@@ -108,7 +109,7 @@ void print(const Verdict& verdict) {
     if (accuracy) fmt::print("{:<36}{}\n", fmt::format("against the {}", reference), percents(accuracy));
   };
   row("golden", verdict.golden);
-  row("mean-dilatation element", verdict.twin);
+  row("mean-dilatation element", verdict.mean_dilatation);
   row("truth", verdict.truth);
   if (verdict.finding) fmt::print("finding: {}\n", name_of(*verdict.finding));
 }
@@ -118,10 +119,10 @@ void print(const Verdict& verdict) {
 bool check(const std::vector<Limit>& limits, const Verdict& verdict, const std::string& against) {
   const std::optional<Accuracy>& found = against == "truth" ? verdict.truth
                                          : verdict.golden   ? verdict.golden
-                                                            : verdict.twin;
+                                                            : verdict.mean_dilatation;
   if (!found) throw InputError(fmt::format("--against truth: {} has no stored truth", verdict.case_name));
   const Accuracy& accuracy = *found;
-  const std::string reference = &found == &verdict.twin ? "mean-dilatation element" : against;
+  const std::string reference = &found == &verdict.mean_dilatation ? "mean-dilatation element" : against;
   bool all_hold = true;
   for (const auto& [figure, most] : limits) {
     if (figure == "profile" && !accuracy.profile_relative_error) {

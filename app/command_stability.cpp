@@ -90,7 +90,7 @@ char letter(const Cell& cell) {
       return 'I';
     case Finding::unstable:
       return 'U';
-    case Finding::not_at_rest:
+    case Finding::no_equilibrium:
       break;
   }
   return 'R';

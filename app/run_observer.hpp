@@ -25,7 +25,7 @@ class RunObserver final : public Observer {
         writer_(writer) {
     if (model.choice().ranks->rank() == 0) progress_.emplace(model.scene().settings.name);
     if (keeper != nullptr) {
-      for (const auto& told : keeper->run().frames) frame(told);
+      for (const auto& earlier : keeper->run().frames) frame(earlier);
       for (const auto& row : keeper->run().history) history(row);
     }
     keeper_ = keeper;

@@ -131,8 +131,8 @@ void print_method(const Model& model) {
   const std::string kappa = kappa_text(model);
   fmt::print("{}{}{}, {}", choice.method, kappa.empty() ? "" : ", kappa ", kappa, name_of(choice.precision));
   if (choice.ranks->count() == 1 && !method_named(choice.method).is_condensed) {
-    const NodalField at_rest(model.scene().mesh.points.size());
-    fmt::print(", stable step {}", with_prefix(stable_step(model, at_rest).step, "s"));
+    const NodalField undeformed(model.scene().mesh.points.size());
+    fmt::print(", stable step {}", with_prefix(stable_step(model, undeformed).step, "s"));
   }
   fmt::print("\n");
 }

@@ -19,9 +19,9 @@ bool run_tasks(const std::string& title, std::size_t n, int threads,
   std::atomic<bool> failed = false;
   std::exception_ptr failure;
   std::mutex failing;
-  const auto going_on = [&] { return !interrupted() && !failed; };
+  const auto active = [&] { return !interrupted() && !failed; };
   const auto call_all = [&] {
-    for (std::size_t k = next++; k < n && going_on(); k = next++) {
+    for (std::size_t k = next++; k < n && active(); k = next++) {
       try {
         work(k);
         ++done;
@@ -36,7 +36,7 @@ bool run_tasks(const std::string& title, std::size_t n, int threads,
   for (int t = 0; t < std::max(wanted, 1); ++t) pool.emplace_back(call_all);
   {
     Progress progress(title);
-    while (done < n && going_on()) {
+    while (done < n && active()) {
       progress.show(static_cast<double>(done) / static_cast<double>(n),
                     fmt::format("{} of {} runs", done.load(), n));
       std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -6,7 +6,7 @@ from measuring import table
 from rest_search import WITHIN
 
 # The explicit method of the golden's element, the reference for motions.
-TWIN = "tl-mean-dilatation"
+MEAN_DILATATION = "tl-mean-dilatation"
 NOTES_AT_REST = """
 The same answer by different methods. CalculiX, FEBio and FEniCSx use Newton's method with a direct
 solver, Sandglass its search for rest, all until their residuals are below 1e-8. Programs that only
@@ -17,16 +17,16 @@ are comparable, times per step are not.
 seconds: wall time of the whole process; of OpenRadioss, of its engine; of FEniCSx, of the solution
 without set-up and compilation. CPU: processor time. max to
 golden, to truth: largest error at any node over the largest imposed displacement, by `sandglass
-score`; to twin: for a case without a golden, to tl-mean-dilatation.
+score`, or, without a golden, tl-mean-dilatation.
 """
 NOTES_IN_MOTION = """
 The same motion by the same method: central differences with lumped masses and the same step,
 {step:.3g} s, or a shorter one if the program considers that unstable; {share:.3g} of the case's
 displacements, imposed in {steps} steps. The comparable figure is the time per element and step: the
 additional processor time of a longer run over its additional steps, so start-up does not count.
-There is no golden for a motion. to {twin}: largest difference from its final displacement over the
-imposed one. nearest: the method of Sandglass with the most similar motion; C3D8 and tl-full are the
-same element and must agree. A motion that is far from all others is not sound.
+There is no golden for a motion. to {element}: largest difference from its final displacement over
+the imposed one. nearest: the method of Sandglass with the most similar motion; C3D8 and tl-full are
+the same element and must agree. A motion that is far from all others is not sound.
 """
 
 
@@ -50,7 +50,7 @@ SHARED = (
     ("CPU, s (range)", "processor_seconds_of_runs", spread),
     ("steps", "steps", str),
 )
-COLUMNS_AT_REST = (
+STATIC_COLUMNS = (
     *SHARED,
     ("load steps", "load_steps", str),
     ("evaluations", "evaluations", str),
@@ -59,15 +59,15 @@ COLUMNS_AT_REST = (
     ("ms a step", "seconds_per_step", lambda seconds: f"{1e3 * seconds:.3g}"),
     ("max to golden", "golden", percent),
     ("max to truth", "truth", percent),
-    ("max to twin", "twin", percent),
+    (f"max to {MEAN_DILATATION}", "twin", percent),
     ("failed", "failure", str),
 )
-COLUMNS_IN_MOTION = (
+MOTION_COLUMNS = (
     *SHARED,
     ("step, ms", "time_step", lambda seconds: f"{1e3 * seconds:.3g}"),
     ("us a step", "seconds_per_step", lambda seconds: f"{1e6 * seconds:.3g}"),
     ("ns per element and step (range)", "ns_of_rounds", spread),
-    (f"to {TWIN}", "to_twin", percent),
+    (f"to {MEAN_DILATATION}", "to_mean_dilatation", percent),
     ("nearest", "nearest", lambda found: f"{found['method']}, {percent(found['difference'])}"),
     ("failed", "failure", str),
 )
@@ -93,11 +93,11 @@ def report(document, steps):
         f"medians of {document['repetitions']}",
         *(" ".join(text.split()) for text in programs),
     ]
-    if document["at_rest"]:
-        lines += ["", "## At rest", "", shown(document["at_rest"], COLUMNS_AT_REST)]
+    if document["static"]:
+        lines += ["", "## Static equilibrium", "", shown(document["static"], STATIC_COLUMNS)]
         lines.append(NOTES_AT_REST.format(within=WITHIN))
     if document["in_motion"]:
         share, step = document["share_of_displacements"], document["time_step"]
-        notes = NOTES_IN_MOTION.format(steps=steps, step=step, share=share, twin=TWIN)
-        lines += ["", "## In motion", "", shown(document["in_motion"], COLUMNS_IN_MOTION), notes]
+        notes = NOTES_IN_MOTION.format(steps=steps, step=step, share=share, element=MEAN_DILATATION)
+        lines += ["", "## In motion", "", shown(document["in_motion"], MOTION_COLUMNS), notes]
     return "\n".join(lines).strip()

@@ -62,9 +62,9 @@ class Bench:
         """
         done = clock.run([self.binary, *arguments], None, self.environment, self.processor)
         if done.code not in (0, 1):
-            told = done.errors.strip().splitlines() or ["no message"]
+            lines = done.errors.strip().splitlines() or ["no message"]
             kind = InputError if done.code == 2 else ComputationError
-            raise kind(f"sandglass {arguments[0]}: {told[-1].removeprefix('error: ')}")
+            raise kind(f"sandglass {arguments[0]}: {lines[-1].removeprefix('error: ')}")
         return done
 
     def build(self):
@@ -93,7 +93,7 @@ class Bench:
     def score(self, answer):
         """Max errors of a file of displacements, as fractions.
 
-        Relative to golden and truth or, without a golden, to the explicit twin; None if unknown.
+        Relative to golden and truth or, without a golden, to tl-mean-dilatation; None if unknown.
         """
         output = self.folder / "score.json"
         self.sandglass("score", answer, "--case", self.path, "--json", output)

@@ -25,13 +25,13 @@ from common.accuracy import relative_errors
 from common.command import command_line, option, whole_number
 from common.errors import ComputationError, InputError, suggestion
 from common.files import write_json
-from peer_report import COLUMNS_AT_REST, COLUMNS_IN_MOTION, TWIN, report
+from peer_report import MEAN_DILATATION, MOTION_COLUMNS, STATIC_COLUMNS, report
 from rest_search import RestSearch
 from rivals import PROGRAMS
 
 METHODS = ("tl-perturbation", "tl-four-point", "tl-mean-dilatation", "tl-full")
-AT_REST = (*METHODS, "tl-energy-sampling")
-IN_MOTION = (*METHODS, "ul-perturbation")
+STATIC_METHODS = (*METHODS, "tl-energy-sampling")
+MOTION_METHODS = (*METHODS, "ul-perturbation")
 # Methods that are also computed in single precision, like programs that use it.
 IN_FLOAT = ("tl-perturbation", "tl-mean-dilatation")
 NEWTON, RELAXATION, EXPLICIT = "Newton", "search for rest", "central differences"
@@ -77,7 +77,7 @@ class Row:
 
     def record(self, **more):
         """The row as a dict of plain figures; None for unknown ones."""
-        record = {key: None for _, key, _ in (*COLUMNS_AT_REST, *COLUMNS_IN_MOTION)}
+        record = {key: None for _, key, _ in (*STATIC_COLUMNS, *MOTION_COLUMNS)}
         record |= {"program": self.program, "element": self.element, "solve": self.solve}
         known = ("seconds", "processor_seconds", "ns_per_element_step")
         record |= dict.fromkeys(known) | self.more
@@ -105,7 +105,7 @@ class Row:
         ]
 
 
-def rows_at_rest(bench, programs, options):
+def static_rows(bench, programs, options):
     """A static row for each program, element and method."""
     rows, found = [], {}
     for program, element in elements_of(bench, programs, options):
@@ -115,7 +115,7 @@ def rows_at_rest(bench, programs, options):
         else:
             runs = {"answer": peer_runs.run_of(bench, program, element, bench.path)}
             rows.append(Row(program.name, str(element), NEWTON, runs, **more))
-    for method in options.methods or AT_REST:
+    for method in options.methods or STATIC_METHODS:
         step = step_of(bench, method) if "motion" in options.solves else None
         for precision in precisions_of(method):
             own = (bench, method, precision, bench.path, peer_runs.EVALUATIONS)
@@ -200,10 +200,10 @@ def elements_of(bench, programs, options):
 
 def motion_methods(options):
     """The methods of Sandglass to compare in motion; always includes the golden's."""
-    return list(dict.fromkeys([*(options.methods or IN_MOTION), TWIN]))
+    return list(dict.fromkeys([*(options.methods or MOTION_METHODS), MEAN_DILATATION]))
 
 
-def records_at_rest(bench, rows):
+def static_records(bench, rows):
     """The rows with their errors. Raises InputError."""
     return [
         (
@@ -233,7 +233,7 @@ def records_in_motion(bench, motion, rows):
             if others:
                 method = min(others, key=others.get)
                 more["nearest"] = {"method": method, "difference": others[method]}
-            more["to_twin"] = far.get(TWIN)
+            more["to_mean_dilatation"] = far.get(MEAN_DILATATION)
             duration = motion.time_step * motion.steps
             more["time_step"] = duration / row.clocked["answer"][0].steps
             more["seconds_per_step"] = statistics.median(row.per_step())
@@ -276,14 +276,14 @@ def measure(options):
         bench = peer_runs.Bench(path, folder)
         for program in programs:
             program.environment, program.processor = bench.environment, bench.processor
-        at_rest, in_motion, motion = [], [], None
+        static, in_motion, motion = [], [], None
         if "rest" in options.solves:
-            at_rest = rows_at_rest(bench, programs, options)
+            static = static_rows(bench, programs, options)
         if "motion" in options.solves:
             motion = peer_runs.Motion(bench, options.steps, motion_methods(options))
             in_motion = rows_in_motion(motion, programs, options)
         for _ in range(options.repetitions):
-            for row in (*at_rest, *in_motion):
+            for row in (*static, *in_motion):
                 row.round()
         place["load_average_after"] = os.getloadavg()[0]
         version = place.pop("versions")["sandglass"]
@@ -298,17 +298,17 @@ def measure(options):
             "nodes": len(bench.mesh.points),
             "mesh_hash": bench.mesh_file.mesh_hash,
             "repetitions": options.repetitions,
-            "at_rest": records_at_rest(bench, at_rest),
+            "static": static_records(bench, static),
             "in_motion": records_in_motion(bench, motion, in_motion),
         }
         if motion:
             document |= {"time_step": motion.time_step, "share_of_displacements": motion.share}
         if options.answers:
-            keep_answers(at_rest, options.answers)
+            keep_answers(static, options.answers)
     print(report(document, options.steps))
     if options.json:
         write_json(options.json, document)
-    failed = [row for row in (*at_rest, *in_motion) if row.failure]
+    failed = [row for row in (*static, *in_motion) if row.failure]
     for row in failed:
         print(f"error: {row.program} {row.element}, {row.solve}: {row.failure}", file=sys.stderr)
     return 3 if failed else 0
@@ -334,7 +334,7 @@ main = command_line(
     ),
     option("--about", action="append", metavar="NAME[:BUILD]=TEXT", help="its revision and flags"),
     measuring.JSON,
-    option("--answers", type=Path, metavar="FOLDER", help="keep the displacements at rest"),
+    option("--answers", type=Path, metavar="FOLDER", help="keep the static displacements"),
     option("--repetitions", type=whole_number(1), default=5, metavar="N", help="default: 5"),
     option("--elements", nargs="+", metavar="ELEMENT", help="of the programs; default: all"),
     option("--methods", nargs="+", metavar="METHOD", help="of Sandglass; default: five of each"),

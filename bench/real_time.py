@@ -39,9 +39,9 @@ FOLDER = os.environ.get("SANDGLASS_PYTHON_FOLDER", str(ROOT / "build" / "release
 
 
 def predictions(case, methods, folder):
-    """(motion, rungs) of `choose`: those on the case's own mesh with a step and automatic kappa.
+    """(motion, candidates) of `choose`: those on the own mesh with a step and automatic kappa.
 
-    motion: duration (s) and damping (1/s) of the case's own motion. rungs: its records.
+    motion: duration (s) and damping (1/s) of the case's own motion. candidates: its records.
     """
     file = Path(folder) / "choice.json"
     words = [binary(), "choose", case, "--realtime", "--all", "--json", file]
@@ -49,12 +49,12 @@ def predictions(case, methods, folder):
         words += ["--methods", *methods]
     output_of(*words, allowed=(0, 1))
     document = json.loads(file.read_text())
-    rungs = [
-        rung
-        for rung in document["rungs"]
-        if rung["mesh"] == "own mesh" and rung["step_size"] and rung["kappa"] is None
+    candidates = [
+        candidate
+        for candidate in document["rungs"]
+        if candidate["mesh"] == "own mesh" and candidate["step_size"] and candidate["kappa"] is None
     ]
-    return document["own_motion"], rungs
+    return document["own_motion"], candidates
 
 
 def smooth(share):
@@ -62,12 +62,12 @@ def smooth(share):
     return share**3 * (10 - 15 * share + 6 * share**2)
 
 
-def case_with_method(case, rung, folder):
-    """A copy of the case that names the rung's method and accuracy."""
+def case_with_method(case, candidate, folder):
+    """A copy of the case that names the candidate's method and accuracy."""
     text = (CASES / f"{case}.toml").read_text()
-    lines = ["", "[method]", f'name = "{rung["method"]}"']
-    if rung["accuracy"] is not None:
-        lines.append(f"accuracy = {rung['accuracy']!r}")
+    lines = ["", "[method]", f'name = "{candidate["method"]}"']
+    if candidate["accuracy"] is not None:
+        lines.append(f"accuracy = {candidate['accuracy']!r}")
     path = Path(folder) / f"{case}.toml"
     path.write_text(text + "\n".join(lines) + "\n")
     return path
@@ -92,12 +92,12 @@ def measured(sandglass, case, methods):
     """{(method, accuracy, precision): (predicted, simulated)} in s per simulated second."""
     found = {}
     with tempfile.TemporaryDirectory() as folder:
-        motion, rungs = predictions(case, methods, folder)
-        for rung in rungs:
-            path = case_with_method(case, rung, folder)
-            seconds = simulated(sandglass, path, rung["precision"], motion)
-            key = (rung["method"], rung["accuracy"], rung["precision"])
-            found[key] = (rung["seconds_per_simulated_second"], seconds)
+        motion, candidates = predictions(case, methods, folder)
+        for candidate in candidates:
+            path = case_with_method(case, candidate, folder)
+            seconds = simulated(sandglass, path, candidate["precision"], motion)
+            key = (candidate["method"], candidate["accuracy"], candidate["precision"])
+            found[key] = (candidate["seconds_per_simulated_second"], seconds)
     return found
 
 

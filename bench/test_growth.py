@@ -38,8 +38,8 @@ def test_missing_programs_are_named_and_left_out(tmp_path, monkeypatch, capsys):
     code, document = measured(growth.main, tmp_path, "--most", "400")
     assert code == 0
     assert {record["name"] for record in document["records"]} == set(growth.METHODS)
-    told = capsys.readouterr().err
-    assert "install python3-dolfinx" in told and "install calculix-ccx" in told
+    errors = capsys.readouterr().err
+    assert "install python3-dolfinx" in errors and "install calculix-ccx" in errors
 
 
 def test_less_than_the_smallest_mesh_is_wrong_input(tmp_path, capsys):

@@ -19,12 +19,12 @@ def test_prints_what_sleep_neglects(tmp_path, capsys):
     assert (u[:, 2] == -local_touch.EDGE).sum() == 25, "five nodes along each side of the patch"
 
 
-def test_tells_of_a_refused_run(capsys):
+def test_a_refused_run_is_reported(capsys):
     assert local_touch.main(["--elements", "4", "4", "2", "--method", "tl-nothing"]) == 2
     assert "'tl-nothing'" in capsys.readouterr().err
 
 
-def test_survey_tells_the_worst_first(monkeypatch, capsys):
+def test_survey_prints_the_worst_first(monkeypatch, capsys):
     def ran(case, method, folder, share=None):
         calls.append(share)
         return 1.0, 0.5 if share else 1.0, np.full((3, 3), float(share or 0.0))

@@ -20,7 +20,7 @@ def test_a_search_for_rest(block):
     assert evaluations > 3 and seconds > 0 and "static equilibrium" in text
 
 
-def test_a_program_that_says_nothing_of_rest(block, monkeypatch):
+def test_a_program_that_reports_no_equilibrium(block, monkeypatch):
     monkeypatch.setattr(measuring, "output_of", lambda *_: "static equilibrium: soon")
     with pytest.raises(ComputationError, match="block.toml -m tl-none: .*required, .*soon"):
         measuring.rest_of(block, "tl-none")

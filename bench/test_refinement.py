@@ -29,6 +29,6 @@ def test_an_accuracy_that_cannot_be_reached_ends_the_case(tmp_path, monkeypatch,
     assert "no answer found on the refined mesh of" in capsys.readouterr().err
 
 
-def test_wrong_input_is_told(tmp_path, capsys):
+def test_wrong_input_is_reported(tmp_path, capsys):
     assert measured(refinement.main, tmp_path, "colum") == (2, None)
     assert "colum" in capsys.readouterr().err

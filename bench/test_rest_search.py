@@ -72,6 +72,6 @@ def test_a_program_that_takes_no_longer_steps_keeps_those_of_sandglass():
     assert way.time_step == pytest.approx(0.8e-3, rel=1e-2)
 
 
-def test_a_program_that_diverges_with_the_steps_of_sandglass_is_told():
+def test_a_program_that_diverges_with_the_steps_of_sandglass_is_reported():
     with pytest.raises(ComputationError, match="diverges"):
         RestSearch(Body(), Program(longest=0.5), None).quickest()

@@ -69,7 +69,7 @@ def test_damaged_progress_file(tmp_path, old, new):
 
 
 @pytest.mark.parametrize(
-    "script, told",
+    "script, message",
     [
         ("echo ' *ERROR: increment size too small'; exit 201", "201: .*increment size too small"),
         ("exit 1", "ended with 1: no message"),
@@ -77,13 +77,13 @@ def test_damaged_progress_file(tmp_path, old, new):
         ("sed '$d' > case.sta <<'E'\n" + STA + "E\necho 'Total CalculiX Time: 1.5'", "at 0.5750"),
     ],
 )
-def test_failure_of_ccx_is_told(tmp_path, script, told):
+def test_failure_of_ccx_is_reported(tmp_path, script, message):
     program, deck = stand_in(tmp_path, CalculiX, script)
-    with pytest.raises(ComputationError, match=told):
+    with pytest.raises(ComputationError, match=message):
         program.run(deck, None)
 
 
-def test_what_ccx_tells_is_read(tmp_path):
+def test_output_of_ccx_is_read(tmp_path):
     (tmp_path / "frd").write_text(FRD)
     (tmp_path / "sta").write_text(STA)
     said = "echo 'CalculiX Version 2.20, Copyright'; echo 'Total CalculiX Time: 1.5'"
@@ -93,16 +93,18 @@ def test_what_ccx_tells_is_read(tmp_path):
     assert (found.steps, found.iterations, program.version) == (2, 9, "2.20")
 
 
-@pytest.mark.parametrize("motion, told", [((0.5, 3), None), ((0.5, 4), "at 1.50000E.00 s of 2 s")])
-def test_a_motion_of_ccx_must_reach_its_end(tmp_path, motion, told):
+@pytest.mark.parametrize(
+    "motion, message", [((0.5, 3), None), ((0.5, 4), "at 1.50000E.00 s of 2 s")]
+)
+def test_a_motion_of_ccx_must_reach_its_end(tmp_path, motion, message):
     """1.5 s in steps of .25 s: half of those requested."""
     (tmp_path / "frd").write_text(FRD)
     said = "echo 'SELECTED time increment: 0.25'; echo 'Total CalculiX Time: 1.5'"
     program, deck = stand_in(tmp_path, CalculiX, f"cp frd case.frd; {said}")
-    if told is None:
+    if message is None:
         assert program.run(deck, motion).steps == 6
     else:
-        with pytest.raises(ComputationError, match=told):
+        with pytest.raises(ComputationError, match=message):
             program.run(deck, motion)
 
 
@@ -110,12 +112,12 @@ DIVERGES = "echo '!!!Divergence after 12 steps -> reduce time step.'; touch U.tx
 
 
 @pytest.mark.parametrize(
-    "script, told",
+    "script, message",
     [(DIVERGES, "NiftySim: Divergence after 12 steps"), ("exit 0", "NiftySim: no answer")],
 )
-def test_failure_of_niftysim_is_told(tmp_path, script, told):
+def test_failure_of_niftysim_is_reported(tmp_path, script, message):
     program, deck = stand_in(tmp_path, NiftySim, script)
-    with pytest.raises(ComputationError, match=told):
+    with pytest.raises(ComputationError, match=message):
         program.run(deck, (0.5, 3))
 
 

@@ -168,14 +168,14 @@ class Failures(Table):
         for case in maps:
             cells = [cell for part in case["maps"] for cell in part["cells"]]
             for method in dict.fromkeys(cell["method"] for cell in cells):
-                rows[method][case["case"]] = tell([c for c in cells if c["method"] == method])
+                rows[method][case["case"]] = summary_of([c for c in cells if c["method"] == method])
         names = [case["case"] for case in maps]
         titles = ["method", *(f"`{name}`" for name in names)]
         lines = [[f"`{method}`", *(row.get(n, "-") for n in names)] for method, row in rows.items()]
         return titles, lines
 
 
-def tell(cells):
+def summary_of(cells):
     """The number of good cells of a method, and the findings of the others."""
     asked = [cell for cell in cells if not cell["golden_failed"] and not cell["refused"]]
     kinds = collections.Counter(cell["finding"] for cell in asked)

@@ -38,7 +38,7 @@ def body(case):
 @pytest.mark.parametrize(
     "precision, limit", [("double", 200 * 200 * 1.8e-18), ("float", 200 * 1e-9)]
 )
-def test_moved_by_hand_it_goes_as_the_program(case, tmp_path, precision, limit):
+def test_moved_by_hand_it_matches_the_program(case, tmp_path, precision, limit):
     """Limits: half a unit in the last place of 0.02 m at driven nodes in each of 200 steps,
     accumulated by two sums over as many; in float the signs of roundings vary, and one suffices."""
     result = tmp_path / "result.h5"

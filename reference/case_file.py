@@ -327,7 +327,7 @@ def _gravity(where, table):
 
 
 def _support(where, table):
-    """A [[support]] table as a Support; its damping plays no part at rest."""
+    """A [[support]] table as a Support; its damping has no effect in statics."""
     return Support(
         *_read(where, table, "damping", set=str, stiffness=0.0, only_normal=False).values()
     )
@@ -352,10 +352,10 @@ def _obstacle(where, table, moving):
 def _read(where, table, *others, **keys):
     """The values of a table's keys, in their order: vectors as tuples, numbers as floats.
 
-    keys: a type (float: any number; tuple: a vector) of a required key, or the value of one that is
-    left out; None: a vector or a text. others: keys that are read elsewhere. Raises InputError for
-    any other key: what nothing here knows would give the answer of another case. The rules for
-    values are those of `sandglass mesh`, which has read the same file.
+    keys: a type (float: any number; tuple: a vector) of a required key, or the default of an
+    optional one; None: a vector or a text. others: keys that are read elsewhere. Raises InputError
+    for any other key: ignoring it would solve a different case. The rules for values are those of
+    `sandglass mesh`, which has read the same file.
     """
     found = {}
     for key in table:

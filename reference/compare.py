@@ -38,7 +38,7 @@ def golden_error(golden_path, truth_path):
                 f"{golden_path}: both must come from the same case and mesh; run "
                 f"reference/regenerate {golden['case']}"
             )
-    # Both contain the coordinates of the mesh file; 1e-12 of the size allows for another build.
+    # Both contain the coordinates of the mesh file; 1e-12 of the size covers other rounding.
     if points.shape != truth_points.shape or not np.allclose(
         points, truth_points, rtol=0, atol=1e-12 * np.ptp(points)
     ):

@@ -199,7 +199,7 @@ def split_nodes(cells, n_nodes):
     parents_of_new = []
     for n_parents in (2, 4, 8):  # edges, faces, cells
         slots = [s for s in range(27) if len(parents[s]) == n_parents]
-        # Two cells share an edge or a face if and only if they share all of its vertices.
+        # Two cells share an edge or a face if and only if they share all its vertices.
         keys = np.sort(np.stack([cells[:, parents[s]] for s in slots], axis=1), axis=2)
         entities, number = np.unique(keys.reshape(-1, n_parents), axis=0, return_inverse=True)
         local_to_global[:, slots] = n_nodes + number.reshape(len(cells), len(slots))

@@ -81,7 +81,7 @@ class Loads:
             modulus = _per_cell(domain, mesh, moduli)[cells].min()
             places = space.tabulate_dof_coordinates()
             self.contacts.append(Contact(touching.obstacle, places, areas, modulus, edge))
-        # Each with its own measure, which a common form cannot have.
+        # Each needs its own measure, so they cannot share a form.
         trial = ufl.TrialFunction(space)
         self._forms = [
             [

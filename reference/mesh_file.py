@@ -16,7 +16,7 @@ from common.hexahedron import boundary_faces
 from hexahedra import Condition, HexMesh, Surface, Touching, traction, turn_about
 
 
-TIES = ("node", "of", "weight")  # datasets of nodes that hang
+TIES = ("node", "of", "weight")  # datasets of hanging nodes
 
 
 @dataclass(frozen=True)

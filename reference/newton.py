@@ -12,7 +12,7 @@ from common.errors import ComputationError
 
 MAX_ITERATIONS = 20
 MAX_AUGMENTATIONS = 50
-# A load step need only reach the basin of convergence of the next; the last is exact to round-off.
+# A load step must only reach the next one's basin of convergence; the last is exact to round-off.
 STEP_TOLERANCE = 1e-3
 SMALLEST_STEP = 1 / 4096
 SMALLEST_FRACTION = 1 / 16
@@ -44,7 +44,7 @@ class Unknown:
 
 
 class Problem:
-    """What solve() needs to know of any problem on a HexMesh: which unknowns are imposed.
+    """The interface that solve() needs of any problem on a HexMesh: which unknowns are imposed.
 
     Attributes: fixed (prescribed unknowns), free (the others), scale (the largest displacement
     imposed on the way, m), load (the current factor of the loads, 0 to 1).

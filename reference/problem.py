@@ -27,7 +27,7 @@ class MixedProblem(Problem):
 
     The golden's element: a trilinear displacement and one pressure (Q1-P0), 2 x 2 x 2 Gauss points.
 
-    mesh: HexMesh. materials: list of Material, of which the mesh's elements have the numbers.
+    mesh: HexMesh. materials: list of Material, to which the mesh's material numbers refer.
     Attributes, beside those of a Problem: displacement and pressure (dolfinx functions, m and Pa),
     symmetric (whether tangents are).
     """

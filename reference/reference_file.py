@@ -12,7 +12,7 @@ from common.files import new_file
 
 FOLDER = Path(__file__).resolve().parent
 KINDS = ("golden", "truth")
-MOTION = "motion"  # the kind of a golden of motion: in its own folder, as it has many times
+MOTION = "motion"  # a golden of motion, in its own folder because it has many times
 
 # Every root attribute of such a file, with its type.
 ATTRIBUTES = {

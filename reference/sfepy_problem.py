@@ -12,9 +12,9 @@ import numpy as np
 import scipy.sparse
 
 with contextlib.redirect_stdout(io.StringIO()):
-    # SfePy creates this folder when first imported, and fails if another process is faster.
+    # SfePy creates this folder on first import, and fails if another process does too.
     (Path.home() / ".sfepy").mkdir(exist_ok=True)
-    import sfepy.discrete as discrete  # first: other orders of import fail
+    import sfepy.discrete as discrete  # must come first: other orders of import fail
     from sfepy import __version__ as VERSION
     from sfepy.base.base import output
     from sfepy.discrete.fem import FEDomain, Field, Mesh
@@ -26,7 +26,7 @@ from newton import Problem, Unknown, condensed
 
 output.set_output(quiet=True)
 
-# Of 2x2x2 Gauss points, as the golden has them.
+# The degree of 2x2x2 Gauss points, as in the golden.
 ORDER = 3
 LAWS = ("neo-hookean",)
 

@@ -46,7 +46,7 @@ def solve_case(case, mesh, refinements, load_steps, make=MixedProblem):
     one per mesh; Outcome on the last mesh; axes of the mirror planes used, as text). Raises
     ComputationError.
     """
-    # The golden is the oracle for everything else: on its own mesh it takes no short cut.
+    # The golden is the oracle for everything else, so it takes no short cut on its own mesh.
     part, halves = halve(mesh) if refinements else (mesh, [])
     n_nodes = len(part.points)
     displacements, coarse = [], None

@@ -21,7 +21,7 @@ class Half:
     """One half of a mesh, and the map from its nodes to those of the whole.
 
     axis: normal of the mirror plane. mesh: HexMesh of the half. source: (n,) node of the half from
-    which each node of the whole takes its displacement. mirrored: (n,) True where it is mirrored.
+    which each node of the whole takes its displacement. mirrored: (n,) True for mirrored nodes.
     """
 
     axis: int

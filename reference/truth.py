@@ -37,7 +37,7 @@ from taylor_hood import DEGREE, TaylorHoodProblem
 from tetrahedra import cut
 
 
-ASSUMED_ORDER = 1.0  # of two meshes: that of the singular edges
+ASSUMED_ORDER = 1.0  # for two meshes: the order at singular edges
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Grading:
 
     edges: node set -> number of splits at its edge on each mesh. layers: of elements there. whole:
     number of splits of all elements, on every mesh. parts: element set -> how often its elements
-    are, a number for each mesh. steps: load steps from rest. inside: the mesh, counted from 0, that
+    are, a number for each mesh. steps: load steps. inside: the mesh, counted from 0, that
     is solved with a finer inside as well, None if that costs too much; its edges must be split more
     often than the rest. starts: mesh -> those whose answers it starts from, if not the one before.
     sequences: the meshes that show how fast the answer converges, all in one sequence if empty;

@@ -1,4 +1,4 @@
-"""Draws static figures from the files of other commands, each by what is in it.
+"""Draws static figures from the files of other commands, according to their contents.
 
 Failure maps of `sandglass stability --json`; error against cost of `sandglass choose --all --json`,
 whose files are merged into one figure, as other tolerances try the adaptive method at other
@@ -23,8 +23,8 @@ from sandglass_report.maps import map_plates, read_maps
 from sandglass_report.plates import save_plate
 from sandglass_report.refinement import read_refinement, refinement_plate
 
-# A key of a file, or the name of one that has records -> function of a list of such files that
-# returns plates.
+# A key of a file, or the name of a file with records -> function that makes plates from a list of
+# such files.
 PLATES = {
     "maps": lambda files: [plate for file in files for plate in map_plates(read_maps(file))],
     "rungs": lambda files: [curve_plate(read_costs(files))],

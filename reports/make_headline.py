@@ -1,4 +1,4 @@
-"""Makes the README's figure anew from the records of `ci/verify`, with the text around it.
+"""Makes the README's figure, and the text around it, from the records of `ci/verify`.
 
 Usage: /usr/bin/python3 reports/make_headline.py [RECORDS]
 RECORDS: build/report/figures/speed-accuracy.json, which `reports/make_report.py` writes. They are

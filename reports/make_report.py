@@ -57,7 +57,7 @@ def make(options):
     print(f"{options.output}: {size / 1e6:.1f} MB, made in {seconds:.0f} s")
 
 
-# Input -> where it is unless an option names another place, and what makes it.
+# Input -> its default place, and the command that makes it.
 INPUTS = {
     "verdicts": ("build/verdicts.json", "of sandglass verify --json"),
     "results": ("build/verify", "of sandglass verify --results"),

@@ -1,7 +1,7 @@
 """Checks the entries of results/: schema, hash of the displacements, and errors by scoring again.
 
 Usage: /usr/bin/python3 results/check.py [ENTRY.json...]; all of results/ by default.
-Exit codes: 0 all are right, 1 one is not, 2 bad usage.
+Exit codes: 0 all are correct, 1 one is not, 2 bad usage.
 """
 
 import sys

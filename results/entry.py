@@ -1,4 +1,4 @@
-"""An entry of results/: what a program's displacements on a case score, and what they cost.
+"""An entry of results/: the errors of a program's displacements on a case, and their cost.
 
 The displacements are stored beside it under the hash of their file, so that anyone can score them
 again: errors are checked, times are as submitted.
@@ -21,7 +21,7 @@ from exchange.convert import match_displacement
 FOLDER = ROOT / "results"
 FIGURES = {"max": "max_relative_error", "rms": "rms_relative_error"}
 PROFILE = "profile_relative_error"
-# Scoring again repeats the same arithmetic; only the compiler and its order of sums may differ.
+# Scoring again repeats the same arithmetic; another compiler may only sum in another order.
 SAME = 1e-9
 
 
@@ -36,14 +36,14 @@ def entry_files(folder=FOLDER):
 
 
 def read_entry(path):
-    """The entry in a file, a dict that obeys the schema. Raises InputError naming key and rule."""
+    """The entry in a file, a valid dict. Raises InputError naming key and rule."""
     found = read_json(path)
     require_valid(path, found)
     return found
 
 
 def require_valid(path, entry):
-    """Raises InputError unless an entry obeys the schema. path: for the message."""
+    """Raises InputError unless an entry conforms to the schema. path: for the message."""
     import jsonschema  # only needed here; package python3-jsonschema
 
     broken = sorted(jsonschema.Draft7Validator(schema()).iter_errors(entry), key=str)
@@ -64,7 +64,7 @@ def hash_of(content):
 
 @dataclass(frozen=True)
 class Score:
-    """What a file of displacements is.
+    """The score of a file of displacements.
 
     case: its name. mesh_hash: of the case's mesh. errors: as in an entry. displacement: the bytes
     of the file that stores the displacements in the order of the case's nodes.
@@ -102,7 +102,7 @@ def scored(case, answer):
 
 
 def check(path):
-    """Scores an entry again. Raises InputError unless it is what its displacements say."""
+    """Scores an entry again. Raises InputError unless it matches its displacements."""
     entry = read_entry(path)
     stored = displacement_file(entry, path.parent)
     if not stored.is_file():
@@ -116,8 +116,8 @@ def check(path):
         raise InputError(f"{path}: errors: those to {', '.join(sorted(score.errors))} are required")
     for reference, figures in score.errors.items():
         for figure, value in figures.items():
-            told = entry["errors"][reference].get(figure)
-            if told is None or abs(told - value) > SAME * max(1.0, abs(value)):
+            kept = entry["errors"][reference].get(figure)
+            if kept is None or abs(kept - value) > SAME * max(1.0, abs(value)):
                 raise InputError(
-                    f"{path}: errors.{reference}.{figure} = {told}: its displacements score {value}"
+                    f"{path}: errors.{reference}.{figure} = {kept}: its displacements score {value}"
                 )

@@ -1,10 +1,10 @@
-"""Makes an entry of results/ from a program's displacements on a case, and from what you measured.
+"""Makes an entry of results/ from a program's displacements on a case and your measurements.
 
 Usage: /usr/bin/python3 results/submit.py ANSWER --case CASE --program P --version V --element E
        --precision double --build FLAGS --machine CPU --by NAME [--ns N] [--step S] [--seconds S]
        /usr/bin/python3 results/submit.py --peers peers.json --answers FOLDER --by NAME
-The second form makes an entry of every row that `ci/peers CASE --json --answers` measured at rest.
-Exit codes: 0 done, 2 bad usage or input, 3 scoring failed.
+The second form makes an entry of every row that `ci/peers CASE --json --answers` measured in static
+equilibrium. Exit codes: 0 done, 2 bad usage or input, 3 scoring failed.
 """
 
 import datetime
@@ -20,7 +20,7 @@ from common.errors import InputError
 from common.files import new_file, read_json, write_json
 from results.entry import FOLDER, displacement_file, hash_of, require_valid, scored
 
-# Motions of different elements differ by less than this, of what is imposed.
+# Motions of different elements differ by less than this share of the imposed displacement.
 SOUND = 0.3
 REQUIRED = ("case", "program", "version", "element", "build", "machine")
 OPTIONAL = ("ns_per_element_step", "time_step", "seconds_to_rest", "how")
@@ -29,7 +29,7 @@ OPTIONAL = ("ns_per_element_step", "time_step", "seconds_to_rest", "how")
 def make_entry(answer, folder, given):
     """Scores an answer, stores its displacements and writes its entry; returns the path.
 
-    given: the entry's keys apart from those that are computed here. Raises InputError.
+    given: the entry's keys except those computed here. Raises InputError.
     """
     score = scored(given["case"], answer)
     entry = {
@@ -59,7 +59,7 @@ def of_peers(path, answers):
     found = read_json(path, "ci/peers --json")
     steps = {_key(row): row for row in found["in_motion"] if not row["failure"]}
     programs = {(one["name"], one["build"]): one for one in found["programs"]}
-    for row in found["at_rest"]:
+    for row in found["static"]:
         if row["failure"]:
             continue
         about = programs.get((row["program"], row["build"] or ""))
@@ -82,14 +82,14 @@ def of_peers(path, answers):
 
 
 def _counted(row):
-    """What the way to the answer counts, in words."""
+    """The number of steps or evaluations in words."""
     kinds = ("steps", "load_steps", "evaluations")
     kind = next(kind for kind in kinds if row.get(kind) is not None)
     return f"{row[kind]} {kind.replace('_', ' ')}"
 
 
 def _soundness(moved):
-    """What is to say of a motion that none of ours is near to, as words that follow others."""
+    """A clause about a motion that differs from all of ours; empty if one is near."""
     nearest = moved.get("nearest")
     if not nearest or nearest["difference"] < SOUND:
         return ""

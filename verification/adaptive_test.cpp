@@ -6,11 +6,11 @@
 #include "solve/central_difference.hpp"
 #include "solve/error_estimate.hpp"
 #include "solve/relaxation.hpp"
-#include "support/at_rest.hpp"
 #include "support/level_kernels.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 #include "support/single_element.hpp"
+#include "support/static_answer.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sandglass::verification {
@@ -248,15 +248,15 @@ double distance(const Scene& scene, const NodalField& a, const NodalField& b) {
 /// highest. Answers balance to 1e-8 of the forces.
 TEST(Adaptive, answers_are_as_near_as_asked_for) {
   const Scene scene = pressed_block(0.02);
-  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
+  const NodalField exact = static_answer(scene, {"tl-mean-dilatation"}).u;
   for (const double accuracy : {0.05, 0.01, 0.003, 0.001}) {
-    const NodalField u = at_rest(scene, {.method = "tl-adaptive", .accuracy = accuracy}).u;
+    const NodalField u = static_answer(scene, {.method = "tl-adaptive", .accuracy = accuracy}).u;
     EXPECT_LT(distance(scene, u, exact), accuracy) << accuracy;
   }
-  const NodalField low = at_rest(scene, {"tl-modal-sampling"}).u;
+  const NodalField low = static_answer(scene, {"tl-modal-sampling"}).u;
   EXPECT_GT(distance(scene, low, exact), 0.005) << "the scene asks for nothing";
-  EXPECT_LT(distance(scene, at_rest(scene, {.method = "tl-adaptive", .accuracy = 1e9}).u, low), 1e-7);
-  const NodalField high = at_rest(scene, {.method = "tl-adaptive", .accuracy = 1e-12}).u;
+  EXPECT_LT(distance(scene, static_answer(scene, {.method = "tl-adaptive", .accuracy = 1e9}).u, low), 1e-7);
+  const NodalField high = static_answer(scene, {.method = "tl-adaptive", .accuracy = 1e-12}).u;
   EXPECT_LT(distance(scene, high, exact), 1e-7);
 }
 
@@ -281,16 +281,16 @@ TEST(Adaptive, answers_rest_at_their_levels) {
   const Scene scene = pressed_block(0.02);
   const MethodChoice choice{.method = "tl-adaptive", .accuracy = 0.005};
   const Model model(scene, choice);
-  FrameRecorder told;
-  ASSERT_TRUE(relax(model, told).converged);
+  FrameRecorder recorder;
+  ASSERT_TRUE(relax(model, recorder).converged);
   const auto& elements = elements_of(model);
   Body<double> body(model, elements);
-  body.state() = state_at(elements, told.frames.back().u);
-  elements.set_levels(body.state(), told.frames.back().levels);
+  body.state() = state_at(elements, recorder.frames.back().u);
+  elements.set_levels(body.state(), recorder.frames.back().levels);
   body.impose(1.0);
   body.evaluate_forces();
   EXPECT_LT(body.residual(), 1.01 * scene.settings.relaxation.tolerance);
-  EXPECT_GT(std::count(told.frames.back().levels.begin(), told.frames.back().levels.end(), 2.0), 0);
+  EXPECT_GT(std::count(recorder.frames.back().levels.begin(), recorder.frames.back().levels.end(), 2.0), 0);
   EXPECT_EQ(Adaption<double>(model, body).apply(body, Demotion::never).promoted, 0U);
 }
 
@@ -313,19 +313,19 @@ TEST(Adaptive, motion_keeps_its_energy) {
   FrameRecorder fixed;
   integrate(Model(scene, {"tl-mean-dilatation"}), fixed);
   for (const double accuracy : {0.01, 0.003}) {
-    FrameRecorder told;
-    integrate(Model(scene, {.method = "tl-adaptive", .accuracy = accuracy}), told);
-    EXPECT_LT(told.imbalance / told.work, fixed.imbalance / fixed.work + 12.0 * accuracy) << accuracy;
-    EXPECT_LT(told.unexplained / told.work, 4.0 * fixed.imbalance / fixed.work) << accuracy;
+    FrameRecorder recorder;
+    integrate(Model(scene, {.method = "tl-adaptive", .accuracy = accuracy}), recorder);
+    EXPECT_LT(recorder.imbalance / recorder.work, fixed.imbalance / fixed.work + 12.0 * accuracy) << accuracy;
+    EXPECT_LT(recorder.unexplained / recorder.work, 4.0 * fixed.imbalance / fixed.work) << accuracy;
     RecordProperty("unexplained over work, accuracy " + std::to_string(accuracy),
-                   std::to_string(told.unexplained / told.work));
+                   std::to_string(recorder.unexplained / recorder.work));
     RecordProperty("imbalance over work, accuracy " + std::to_string(accuracy),
-                   std::to_string(told.imbalance / told.work));
-    for (std::size_t n = 1; n < told.frames.size(); ++n) {
-      const auto &before = told.frames[n - 1].levels, &now = told.frames[n].levels;
+                   std::to_string(recorder.imbalance / recorder.work));
+    for (std::size_t n = 1; n < recorder.frames.size(); ++n) {
+      const auto &before = recorder.frames[n - 1].levels, &now = recorder.frames[n].levels;
       EXPECT_TRUE(std::equal(now.begin(), now.end(), before.begin(), std::greater_equal{}));
     }
-    EXPECT_GT(told.frames.back().levels, told.frames.front().levels) << "nothing was adapted";
+    EXPECT_GT(recorder.frames.back().levels, recorder.frames.front().levels) << "nothing was adapted";
   }
 }
 
@@ -334,7 +334,7 @@ TEST(Adaptive, motion_keeps_its_energy) {
 /// together with their mirror images.
 TEST(Adaptive, floats_settle_too) {
   const Scene scene = pressed_block(0.02);
-  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
+  const NodalField exact = static_answer(scene, {"tl-mean-dilatation"}).u;
   for (const double accuracy : {0.01, 0.003}) {
     FrameRecorder in_double, in_float;
     MethodChoice choice{.method = "tl-adaptive", .accuracy = accuracy};
@@ -356,11 +356,11 @@ TEST(Adaptive, forces_alone_wake_elements_too) {
   problem.description.displacements.pop_back();
   problem.description.forces.of<DeadForce>() = {{"pressed", {0.0, 0.0, -0.25}, {}}};
   const Scene scene = make_scene(problem);
-  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
+  const NodalField exact = static_answer(scene, {"tl-mean-dilatation"}).u;
   const double unit = displacement_unit(scene, exact);
-  const NodalField u = at_rest(scene, {.method = "tl-adaptive", .accuracy = 0.002}).u;
+  const NodalField u = static_answer(scene, {.method = "tl-adaptive", .accuracy = 0.002}).u;
   EXPECT_LT(largest_distance(u, exact), 0.002 * unit);
-  EXPECT_GT(largest_distance(at_rest(scene, {"tl-modal-sampling"}).u, exact), 3.0 * 0.002 * unit);
+  EXPECT_GT(largest_distance(static_answer(scene, {"tl-modal-sampling"}).u, exact), 3.0 * 0.002 * unit);
 }
 
 /// Along a beam bent by a pressure, the errors of elements add up to several times the error that each is
@@ -373,18 +373,18 @@ TEST(Adaptive, errors_that_add_up_count_as_a_whole) {
   description.displacements = {{"foot", {}}};
   description.forces.of<Pressure>() = {{"side", 3.0}};
   const Scene scene = make_scene(description, mesh, sets);
-  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
+  const NodalField exact = static_answer(scene, {"tl-mean-dilatation"}).u;
   const double unit = displacement_unit(scene, exact);
   const MethodChoice choice{.method = "tl-adaptive", .accuracy = 0.003};
   const Model model(scene, choice);
-  FrameRecorder told;
-  const Relaxation answer = relax(model, told);
+  FrameRecorder recorder;
+  const Relaxation answer = relax(model, recorder);
   EXPECT_TRUE(answer.converged);
   EXPECT_LT(largest_distance(answer.u, exact), choice.accuracy * unit);
   const auto& elements = elements_of(model);
   Body<double> body(model, elements);
   body.state() = state_at(elements, answer.u);
-  elements.set_levels(body.state(), told.frames.back().levels);
+  elements.set_levels(body.state(), recorder.frames.back().levels);
   EXPECT_GT(Adaption<double>(model, body).apply(body, Demotion::where_enough).demoted,
             mesh.cells.size() / 20);
 }
@@ -392,10 +392,10 @@ TEST(Adaptive, errors_that_add_up_count_as_a_whole) {
 /// The estimate is the error of any method, up to the hundredth of the forces at which its solution stops.
 TEST(ErrorEstimate, is_the_error) {
   const Scene scene = pressed_block(0.02);
-  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
+  const NodalField exact = static_answer(scene, {"tl-mean-dilatation"}).u;
   for (const auto* method : {"tl-perturbation", "tl-full", "tl-four-point", "tl-adaptive"}) {
     const MethodChoice choice{.method = method, .accuracy = 0.01};
-    const NodalField u = at_rest(scene, choice).u;
+    const NodalField u = static_answer(scene, choice).u;
     const ErrorEstimate estimate = estimate_error(Model(scene, choice), u);
     EXPECT_NEAR(estimate.largest / largest_distance(u, exact), 1.0, 0.05) << method;
     double squares = 0.0;

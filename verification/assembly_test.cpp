@@ -340,7 +340,7 @@ TEST(ParallelepipedTest, form_for_them_gives_what_the_general_one_gives) {
     const auto regular = std::get<0>(make_internal_force(mesh, any, {"tl-perturbation"}));
     const auto general = std::get<0>(make_internal_force(mesh, any, {"tl-perturbation-compact"}));
     const NodalField u = wavy(mesh, "tl-perturbation");
-    const auto told = [&](const InternalForce<double>& elements) {
+    const auto results = [&](const InternalForce<double>& elements) {
       State<double> state = state_at(elements, u);
       Rows<double> force(state.u.size());
       elements.evaluate(state, force);
@@ -351,8 +351,8 @@ TEST(ParallelepipedTest, form_for_them_gives_what_the_general_one_gives) {
       return std::tuple(to_field(force, elements.layout()), elements.energies(state), bounds, jacobians,
                         densities);
     };
-    const auto [f, energies, bounds, jacobians, densities] = told(*regular);
-    const auto [f2, energies2, bounds2, jacobians2, densities2] = told(*general);
+    const auto [f, energies, bounds, jacobians, densities] = results(*regular);
+    const auto [f2, energies2, bounds2, jacobians2, densities2] = results(*general);
     EXPECT_LT(largest_distance(f, f2), tolerance(mesh, 2.3e-16));
     EXPECT_NEAR(energies.strain / energies2.strain, 1.0, 1e-12);
     EXPECT_NEAR(energies.hourglass / energies2.hourglass, 1.0, 1e-12);

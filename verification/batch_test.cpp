@@ -184,13 +184,13 @@ TEST(Batch, the_step_is_that_of_the_stiffest_body) {
 TEST(Batch, the_step_shortens_as_one_body_stiffens) {
   Batch<double> batch(block(false), text_of(1.0), 10, {.damping = 15.0});
   Simulation<double> alone(block(false), text_of(1.0), {.damping = 15.0});
-  const double at_rest = batch.step_size() / SteadyStep::first_share;
+  const double undeformed_step = batch.step_size() / SteadyStep::first_share;
   batch.move(7, "head", {0.0, 0.0, -0.08});
   alone.move("head", {0.0, 0.0, -0.08});
   batch.advance(1.0);
   alone.advance(1.0);
-  EXPECT_LT(batch.step_size(), 0.9 * at_rest);
-  EXPECT_NEAR(batch.step_size(), alone.step_size(), 0.02 * at_rest);
+  EXPECT_LT(batch.step_size(), 0.9 * undeformed_step);
+  EXPECT_NEAR(batch.step_size(), alone.step_size(), 0.02 * undeformed_step);
 }
 
 // One element, all of whose nodes are driven, is pressed to 1/2500 of its height. Its volumetric energy grows
@@ -228,7 +228,7 @@ TEST(Batch, an_inverted_body_is_named) {
   }
 }
 
-TEST(Batch, what_it_does_not_support_is_refused) {
+TEST(Batch, unsupported_features_are_refused) {
   const auto with = [](const std::string& more, const SimulationSettings& settings = {}) {
     return input_error([&] { Batch<double>(block(false), text_of(1.0) + more, 3, settings); });
   };

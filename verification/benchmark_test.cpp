@@ -81,7 +81,7 @@ TEST(ForceCheck, status_names_difference_and_limit) {
 }
 
 /// Counts its calls.
-class Fake final : public Candidate {
+class Fake final : public Steppable {
  public:
   explicit Fake(double force, std::size_t states = 1) : steps_in_state(states), force_(force) {}
   NodalField forces() override { return {{force_, 0.0, 0.0}}; }
@@ -124,15 +124,15 @@ TEST(Measure, wrong_forces_get_no_time) {
 /// A mean over states has equally many steps in each; only the first determines the length of batches.
 TEST(Measure, takes_as_many_steps_in_every_state) {
   const NodalField reference{{1.0, 0.0, 0.0}};
-  Fake candidate(1.0, 3);
-  const std::vector<Entry> entries{{&candidate, &reference, 1e-12}};
+  Fake timed(1.0, 3);
+  const std::vector<Entry> entries{{&timed, &reference, 1e-12}};
   const auto timings =
       measure(entries, {.repetitions = 4, .batch_seconds = 1e-6}, [](double) { return true; });
   EXPECT_EQ(timings[0].seconds_per_step.size(), 4U);
   EXPECT_EQ(timings[0].seconds_of_a_check.size(), 4U * 3U);
   EXPECT_EQ(timings[0].seconds_of_a_step.size() % (4U * 3U), 0U);
-  EXPECT_GT(candidate.steps_in_state[1], 0);
-  EXPECT_EQ(candidate.steps_in_state[1], candidate.steps_in_state[2]);
+  EXPECT_GT(timed.steps_in_state[1], 0);
+  EXPECT_EQ(timed.steps_in_state[1], timed.steps_in_state[2]);
 }
 
 /// Tests of allocations would prove nothing if the counter missed some.
@@ -146,7 +146,7 @@ TEST(Allocations, are_counted_with_any_alignment) {
   ::operator delete(aligned, alignment);
 }
 
-TEST(Measure, ends_when_told) {
+TEST(Measure, ends_when_interrupted) {
   const NodalField reference{{1.0, 0.0, 0.0}};
   Fake right(1.0);
   const std::vector<Entry> entries{{&right, &reference, 1e-12}};

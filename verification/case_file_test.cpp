@@ -258,10 +258,10 @@ struct HashedCase {
 
 TEST(CaseFile, hash_follows_every_declared_field_that_decides_the_answer) {
   const auto always = [](std::string_view /*name*/) { return true; };
-  for (const bool at_rest : {true, false}) {
+  for (const bool is_static : {true, false}) {
     HashedCase hashed;
-    hashed.description.quasi_static = at_rest;
-    const auto in_motion = [&](std::string_view /*name*/) { return !at_rest; };
+    hashed.description.quasi_static = is_static;
+    const auto in_motion = [&](std::string_view /*name*/) { return !is_static; };
     for_each_type(Generators{}, [&]<class Generator>() {
       hashed.expect(
           Generator{}, [](Case& c, const Generator& mesh) { c.mesh = mesh; }, always);
@@ -275,7 +275,7 @@ TEST(CaseFile, hash_follows_every_declared_field_that_decides_the_answer) {
       if constexpr (requires { force.curve; }) force.curve = {.times = {0.0, 1.0}, .factors = {0.0, 1.0}};
       hashed.expect(
           force, [](Case& c, const Force& one) { c.forces.of<Force>() = {one}; },
-          [&](std::string_view name) { return !at_rest || name != Force::only_in_motion; });
+          [&](std::string_view name) { return !is_static || name != Force::only_in_motion; });
     });
     Refinement split;
     split.numbers = {1};
@@ -289,7 +289,7 @@ TEST(CaseFile, hash_follows_every_declared_field_that_decides_the_answer) {
     hashed.expect(
         DynamicsSettings{}, [](Case& c, const DynamicsSettings& settings) { c.dynamics = settings; },
         [&](std::string_view name) {
-          return !at_rest && (name == "duration" || name == "ramp_time" || name == "damping");
+          return !is_static && (name == "duration" || name == "ramp_time" || name == "damping");
         });
     hashed.expect(
         RelaxationSettings{}, [](Case& c, const RelaxationSettings& settings) { c.relaxation = settings; },

@@ -80,10 +80,10 @@ void expect_same_from_everywhere(const Scene& scene, MethodChoice choice, std::s
     const RunSoFar read =
         read_checkpoint_file(folder / "run.h5", identity, scene.mesh.points.size(), scene.mesh.cells.size());
     EXPECT_EQ(read.point.arrays, kept.point.arrays);
-    KeepingRecorder goes_on(read);
-    EXPECT_EQ(run(scene, choice, goes_on, &read.point), ending)
+    KeepingRecorder resumed(read);
+    EXPECT_EQ(run(scene, choice, resumed, &read.point), ending)
         << "from the point after " << kept.history.size() << " rows of history";
-    ASSERT_EQ(goes_on.kept().size(), uninterrupted.kept().size() -
+    ASSERT_EQ(resumed.kept().size(), uninterrupted.kept().size() -
                                          static_cast<std::size_t>(&kept - uninterrupted.kept().data()) -
                                          (scene.settings.quasi_static ? 0 : 1));
     if (::testing::Test::HasFailure()) return;
@@ -113,13 +113,13 @@ class CheckpointTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(CheckpointTest, MethodTypes, EntryName);
 
-TYPED_TEST(CheckpointTest, motion_goes_on_with_the_same_bits) {
+TYPED_TEST(CheckpointTest, motion_resumes_with_the_same_bits) {
   if constexpr (!is_condensed<TypeParam>) this->expect_same_with_laws(false, 5);
 }
 
 /// A condensed answer is one step without a point to resume from. A control that only damps fails on the
 /// first levels.
-TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
+TYPED_TEST(CheckpointTest, relaxation_resumes_with_the_same_bits) {
   if constexpr (is_condensed<TypeParam>) {
     this->expect_same(sample_law<NeoHookean>(0.45), true, 0);
   } else {
@@ -128,7 +128,7 @@ TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
 }
 
 /// Load levels that failed and were retried at half the distance are part of the state.
-TEST(Checkpoint, goes_on_after_levels_that_failed) {
+TEST(Checkpoint, resumes_after_levels_that_failed) {
   CaseOnMesh problem = loaded_block_case(sample_law<NeoHookean>(0.45), true);
   problem.description.displacements[1].value = {0.0, 0.0, -0.17};
   problem.description.forces.of<DeadForce>().clear();
@@ -142,7 +142,7 @@ TEST(Checkpoint, goes_on_after_levels_that_failed) {
 }
 
 /// A load that reverses is part of the state, in each of its phases.
-TEST(Checkpoint, goes_on_in_every_cycle) {
+TEST(Checkpoint, resumes_in_every_cycle) {
   Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
   scene.settings.relaxation.cycles = 2;
   KeepingRecorder recorder;
@@ -211,7 +211,7 @@ TEST_F(CheckpointFileTest, is_read_as_it_was_written) {
   EXPECT_EQ(bits_of(read, {}), bits_of(sample(), {}));
 }
 
-TEST_F(CheckpointFileTest, of_another_run_is_refused_and_told_in_what) {
+TEST_F(CheckpointFileTest, of_another_run_is_refused_with_the_difference) {
   write_checkpoint_file(path, identity, sample());
   const std::string text = error({{"method", "t4"}, {"precision", "double"}, {"revision", "abd"}});
   EXPECT_TRUE(contains(text, "run.h5"));

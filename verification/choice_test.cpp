@@ -1,4 +1,4 @@
-/// The ladder of methods and meshes, their evaluation, and the choice.
+/// The candidates of methods and meshes, their evaluation, and the choice.
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <map>
 
 #include "assembly/method_entry.hpp"
-#include "choice/candidates.hpp"
 #include "choice/choose.hpp"
 #include "choice/longer_steps.hpp"
+#include "choice/method_choices.hpp"
 #include "comparison/answer.hpp"
 #include "io/case_file.hpp"
 #include "support/scenes.hpp"
@@ -50,8 +50,8 @@ Scene scene_of_case(const Case& description) {
   return make_scene(with_mesh(description));
 }
 
-/// The user's own mesh as a mesh of the ladder.
-LadderMesh own_mesh(const Case& description, Displacements reference = {}) {
+/// The user's own mesh as a mesh of candidates.
+CandidateMesh own_mesh(const Case& description, Displacements reference = {}) {
   return {{}, with_mesh(description), scene_of_case(description), std::move(reference)};
 }
 
@@ -63,19 +63,19 @@ Choice choose_quietly(const Case& description, const Demand& demand) {
   return choose(with_mesh(description), demand, [](double, const std::string&) { return true; });
 }
 
-/// The ladder has every method in both precisions, or lists it as unfit; a method whose kappa matters, with
+/// The list has every method in both precisions, or lists it as unfit; a method whose kappa matters, with
 /// other values too.
-TEST(Ladder, has_every_method) {
-  std::deque<LadderMesh> meshes;
+TEST(Candidates, has_every_method) {
+  std::deque<CandidateMesh> meshes;
   meshes.push_back(own_mesh(cantilever(0.1)));
-  const auto rungs = make_ladder(meshes, {});
+  const auto candidates = make_candidates(meshes, {});
   for_each_type(Methods{}, [&]<class Method>() {
     int in_double = 0, in_float = 0, unfit = 0, automatic = 0;
-    for (const auto& rung : rungs) {
-      if (rung.choice.method != Method::name) continue;
-      ++(rung.choice.precision == Precision::double_precision ? in_double : in_float);
-      unfit += !rung.unfit.empty();
-      automatic += !rung.choice.kappa;
+    for (const auto& candidate : candidates) {
+      if (candidate.choice.method != Method::name) continue;
+      ++(candidate.choice.precision == Precision::double_precision ? in_double : in_float);
+      unfit += !candidate.unfit.empty();
+      automatic += !candidate.choice.kappa;
     }
     constexpr bool without_answer = DampsOnly<typename Method::Hourglass> || zero_energy_modes<Method>() > 6;
     EXPECT_EQ(unfit, without_answer ? 1 : 0) << Method::name;
@@ -83,40 +83,41 @@ TEST(Ladder, has_every_method) {
     EXPECT_GE(in_double, kappa_affects_equilibrium<Method> ? 3 : 1) << Method::name;
     EXPECT_GE(automatic, 1) << Method::name;
   });
-  EXPECT_EQ(make_ladder(meshes, {.methods = {"linear"}}).size(), 6u);
+  EXPECT_EQ(make_candidates(meshes, {.methods = {"linear"}}).size(), 6u);
 }
 
-/// An adaptive method has several rungs, with accuracies on both sides of the requested one.
-TEST(Ladder, has_several_rungs_for_an_adaptive_method) {
+/// An adaptive method has several candidates, with accuracies on both sides of the requested one.
+TEST(Candidates, has_several_for_an_adaptive_method) {
   const auto choices = choices_of(method_named("tl-adaptive"), {"tl-adaptive"}, NeoHookean{}, 0.01);
   ASSERT_GE(choices.size(), 3u);
   EXPECT_GT(choices.front().accuracy, 0.01);
   EXPECT_LT(choices.back().accuracy, 0.01);
 }
 
-/// The order of the table: cheapest first, with a tenth added to the cost of adaptive rungs. Rungs before the
-/// choice are rejected with a reason; the choice is accurate enough; more expensive rungs were not tried.
+/// The order of the table: cheapest first, with a tenth added to the cost of adaptive candidates. Candidates
+/// before the choice are rejected with a reason; the choice is accurate enough; more expensive candidates
+/// were not tried.
 TEST(Choose, takes_the_first_that_suffices) {
   const Choice choice = choose_quietly(cantilever(0.3), {.tolerance = 0.02});
   ASSERT_TRUE(choice.chosen);
   double before = 0.0;
   for (std::size_t n = 0; n < choice.attempts.size(); ++n) {
-    const auto& [rung, cost, evaluation, outcome] = choice.attempts[n];
+    const auto& [candidate, cost, evaluation, outcome] = choice.attempts[n];
     if (!cost) {
-      EXPECT_EQ(outcome, Outcome::refused) << name_of(rung);
+      EXPECT_EQ(outcome, Outcome::refused) << name_of(candidate);
       continue;
     }
     const double rank =
-        (method_named(rung.choice.method).adapts() ? 1.1 : 1.0) * *cost->per_simulated_second();
-    EXPECT_GE(rank, before) << name_of(rung);
+        (method_named(candidate.choice.method).adapts() ? 1.1 : 1.0) * *cost->per_simulated_second();
+    EXPECT_GE(rank, before) << name_of(candidate);
     before = rank;
-    EXPECT_GT(cost->seconds, 0.0) << name_of(rung);
-    EXPECT_EQ(cost->mean_step.has_value(), !method_named(rung.choice.method).is_condensed);
+    EXPECT_GT(cost->seconds, 0.0) << name_of(candidate);
+    EXPECT_EQ(cost->mean_step.has_value(), !method_named(candidate.choice.method).is_condensed);
     const auto expected = n < *choice.chosen   ? Outcome::refused
                           : n > *choice.chosen ? Outcome::not_tried
                                                : Outcome::chosen;
-    EXPECT_EQ(outcome, expected) << name_of(rung);
-    EXPECT_EQ(evaluation.reason.empty(), outcome != Outcome::refused) << name_of(rung);
+    EXPECT_EQ(outcome, expected) << name_of(candidate);
+    EXPECT_EQ(evaluation.reason.empty(), outcome != Outcome::refused) << name_of(candidate);
     EXPECT_TRUE(outcome != Outcome::not_tried || !evaluation.error);
   }
   for (const auto& mesh : choice.others)
@@ -126,7 +127,7 @@ TEST(Choose, takes_the_first_that_suffices) {
   EXPECT_GT(*chosen.smallest_jacobian, 0.0);
 }
 
-/// The prediction is the distance of the rung's own answer from the reference's, at every node.
+/// The prediction is the distance of the candidate's own answer from the reference's, at every node.
 TEST(Choose, predicts_what_a_run_gives) {
   const Case description = cantilever(0.3);
   const Choice choice = choose_quietly(
@@ -136,10 +137,11 @@ TEST(Choose, predicts_what_a_run_gives) {
   Observer silent;
   const Displacements golden = compute_answer(scene, {"tl-mean-dilatation"}, silent).u;
   int compared = 0;
-  for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
-    if (!rung.mesh->own()) continue;
-    const Displacements u = compute_answer(scene, rung.choice, silent).u;
-    EXPECT_DOUBLE_EQ(*evaluation.error, largest_distance(u.front(), golden.front()) / 0.3) << name_of(rung);
+  for (const auto& [candidate, cost, evaluation, outcome] : choice.attempts) {
+    if (!candidate.mesh->own()) continue;
+    const Displacements u = compute_answer(scene, candidate.choice, silent).u;
+    EXPECT_DOUBLE_EQ(*evaluation.error, largest_distance(u.front(), golden.front()) / 0.3)
+        << name_of(candidate);
     ++compared;
   }
   EXPECT_EQ(compared, 2 + 6);
@@ -147,14 +149,15 @@ TEST(Choose, predicts_what_a_run_gives) {
 }
 
 /// Against the truth, a column's mesh and coarser ones are refined until the golden's element is accurate
-/// enough on them. The rungs on sufficient meshes are tried; a mesh with more elements than these is not.
+/// enough on them. The candidates on sufficient meshes are tried; a mesh with more elements than these is
+/// not.
 TEST(Choose, refines_meshes_against_the_truth) {
   const auto file = std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "column.toml";
   const Choice choice = choose_quietly(
       read_case_file(file), {.tolerance = 0.003, .against = "truth", .methods = {"tl-mean-dilatation"}});
   ASSERT_TRUE(choice.chosen);
   const Attempt& chosen = choice.attempts[*choice.chosen];
-  EXPECT_TRUE(contains(chosen.rung.mesh->name(), "refined to"));
+  EXPECT_TRUE(contains(chosen.candidate.mesh->name(), "refined to"));
   EXPECT_LE(*chosen.evaluation.error, 0.003);
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   int coarse_ones = 0;
@@ -178,9 +181,9 @@ TEST(Choose, takes_small_strains_for_small_motions_only) {
   const Choice large = choose_quietly(cantilever(0.6), {.tolerance = 0.05, .methods = linear_ones});
   EXPECT_FALSE(large.chosen);
   for (const auto& attempt : large.attempts) {
-    EXPECT_TRUE(contains(attempt.evaluation.reason, "small-strain theory")) << name_of(attempt.rung);
+    EXPECT_TRUE(contains(attempt.evaluation.reason, "small-strain theory")) << name_of(attempt.candidate);
   }
-  EXPECT_TRUE(contains(remarks(large).back(), "the most accurate rung"));
+  EXPECT_TRUE(contains(remarks(large).back(), "the most accurate candidate"));
 }
 
 /// The golden's element in double precision is the reference, bit by bit: no tolerance is too strict for it.
@@ -188,11 +191,11 @@ TEST(Choose, always_has_the_reference_itself) {
   const Choice choice = choose_quietly(cantilever(0.3), {.tolerance = 1e-15});
   ASSERT_TRUE(choice.chosen);
   const Attempt& chosen = choice.attempts[*choice.chosen];
-  EXPECT_EQ(chosen.rung.choice.method, choice.reference.name);
+  EXPECT_EQ(chosen.candidate.choice.method, choice.reference.name);
   EXPECT_EQ(*chosen.evaluation.error, 0.0);
 }
 
-/// No method is as fast as a picosecond; rungs over the budget are computed only if all are requested.
+/// No method is as fast as a picosecond; candidates over the budget are computed only if all are requested.
 TEST(Choose, keeps_within_the_budget) {
   Demand demand{.tolerance = 0.05, .budget = 1e-12, .methods = {"tl-perturbation"}};
   Choice choice = choose_quietly(cantilever(0.1), demand);
@@ -210,7 +213,7 @@ TEST(Choose, keeps_within_the_budget) {
 
 /// A soft body allows ten milliseconds for a step, ten thousand times what a machine needs; one with a
 /// stiffness of 3e17 Pa allows a nanosecond for some 1e4 operations, which no machine achieves.
-TEST(Choose, tells_what_real_time_allows) {
+TEST(Choose, reports_what_real_time_allows) {
   Case description = cantilever(0.1);
   const Demand demand{.tolerance = 0.5, .real_time = true, .methods = {"tl-perturbation"}};
   EXPECT_TRUE(choose_quietly(description, demand).chosen);
@@ -236,29 +239,30 @@ TEST(Choose, takes_motions) {
   ASSERT_EQ(choice.reference.u.size(), 5u);
   Observer silent;
   int compared = 0;
-  for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
-    if (rung.choice.method == "linear-condensed") {
+  for (const auto& [candidate, cost, evaluation, outcome] : choice.attempts) {
+    if (candidate.choice.method == "linear-condensed") {
       EXPECT_TRUE(contains(evaluation.reason, "cannot compute motions"));
       continue;
     }
-    EXPECT_TRUE(rung.unfit.empty()) << name_of(rung);
-    ASSERT_TRUE(evaluation.error && evaluation.per_simulated_second) << name_of(rung) << evaluation.reason;
-    if (!rung.mesh->own() || !rung.mesh->steps.empty()) continue;
-    const Displacements u = compute_answer(scene_of_case(description), rung.choice, silent).u;
+    EXPECT_TRUE(candidate.unfit.empty()) << name_of(candidate);
+    ASSERT_TRUE(evaluation.error && evaluation.per_simulated_second)
+        << name_of(candidate) << evaluation.reason;
+    if (!candidate.mesh->own() || !candidate.mesh->steps.empty()) continue;
+    const Displacements u = compute_answer(scene_of_case(description), candidate.choice, silent).u;
     double error = 0.0;
     for (std::size_t t = 0; t < 5; ++t)
       error = std::max(error, largest_distance(u[t], choice.reference.u[t]));
-    EXPECT_DOUBLE_EQ(*evaluation.error, error / 0.1) << name_of(rung);
-    EXPECT_EQ(error == 0.0, rung.choice.method == "tl-mean-dilatation" &&
-                                rung.choice.precision == Precision::double_precision);
+    EXPECT_DOUBLE_EQ(*evaluation.error, error / 0.1) << name_of(candidate);
+    EXPECT_EQ(error == 0.0, candidate.choice.method == "tl-mean-dilatation" &&
+                                candidate.choice.precision == Precision::double_precision);
     ++compared;
   }
   EXPECT_EQ(compared, 6 + 2 + 2);
 }
 
-/// Longer steps are rungs like others. All that remain are accurate enough with the golden's element. The
-/// body's frequency alone lengthens the steps of a block by at least a third, softer bulk moduli lengthen
-/// them further, and a stricter tolerance leaves fewer rungs.
+/// Longer steps are candidates like others. All that remain are accurate enough with the golden's element.
+/// The body's frequency alone lengthens the steps of a block by at least a third, softer bulk moduli lengthen
+/// them further, and a stricter tolerance leaves fewer candidates.
 TEST(Choose, takes_longer_steps_where_they_suffice) {
   Case description = cantilever(0.1);
   description.quasi_static = false;
@@ -268,10 +272,10 @@ TEST(Choose, takes_longer_steps_where_they_suffice) {
     const Choice choice =
         choose_quietly(description, {.tolerance = tolerance, .methods = {"tl-mean-dilatation"}, .all = true});
     std::map<std::string, double> steps;
-    for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
-      if (!rung.mesh->own() || rung.choice.precision != Precision::double_precision) continue;
-      EXPECT_LE(*evaluation.error, tolerance) << rung.mesh->name();
-      steps[rung.mesh->steps] = *cost->mean_step;
+    for (const auto& [candidate, cost, evaluation, outcome] : choice.attempts) {
+      if (!candidate.mesh->own() || candidate.choice.precision != Precision::double_precision) continue;
+      EXPECT_LE(*evaluation.error, tolerance) << candidate.mesh->name();
+      steps[candidate.mesh->steps] = *cost->mean_step;
     }
     return steps;
   };
@@ -320,7 +324,7 @@ class EvaluatorTest : public ::testing::Test {
     const Scene scene = scene_of_case(description);
     const Proceed proceed = go_on;
     const Reference reference = make_reference(scene, "", proceed);
-    const LadderMesh own = own_mesh(description, reference.u);
+    const CandidateMesh own = own_mesh(description, reference.u);
     return Evaluator(scene, reference, tolerance, proceed).evaluate({choice, &own});
   }
 
@@ -348,7 +352,7 @@ TEST_F(EvaluatorTest, asks_for_a_reserve_of_load) {
 }
 
 /// A body pressed to a twentieth of its length along x, and held otherwise, cannot be pressed by another
-/// tenth with any method: no rung needs a reserve that the golden's element does not have.
+/// tenth with any method: no candidate needs a reserve that the golden's element does not have.
 TEST_F(EvaluatorTest, asks_nobody_for_what_the_golden_has_not) {
   Case description = cantilever(0.0);
   description.displacements[1].value = {-0.95, 0.0, 0.0};
@@ -358,7 +362,7 @@ TEST_F(EvaluatorTest, asks_nobody_for_what_the_golden_has_not) {
   const Scene scene = scene_of_case(description);
   const Proceed proceed = go_on;
   const Reference reference{"none", {NodalField(scene.mesh.points.size())}, 1.0, {}};
-  const LadderMesh own = own_mesh(description, reference.u);
+  const CandidateMesh own = own_mesh(description, reference.u);
   Evaluator evaluator(scene, reference, 10.0, proceed);
   const Evaluation found = evaluator.evaluate({{.method = "linear-condensed"}, &own});
   EXPECT_EQ(found.reason, "");
@@ -374,7 +378,7 @@ TEST_F(EvaluatorTest, names_locking_and_hourglassing) {
 }
 
 /// A truth with an error of a percent cannot show that another error is within a tenth of that.
-TEST(Reference, that_is_stored_tells_its_own_error) {
+TEST(Reference, that_is_stored_has_its_own_error) {
   const CaseOnMesh problem = with_mesh(read_case_file(fs::path(SANDGLASS_SOURCE) / "cases" / "column.toml"));
   const Scene scene = make_scene(problem);
   const Reference truth = make_reference(scene, "truth", go_on);

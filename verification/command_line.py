@@ -46,14 +46,14 @@ def ran(*command, **options):
     return subprocess.run(words, capture_output=True, text=True, **options)
 
 
-def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
+def sandglass(*arguments, program=BINARY, code=None, message=(), **options):
     """Runs the program; returns its outcome with its output.
 
-    code: the expected exit code. told: one or more texts that its errors must contain.
+    code: the expected exit code. message: one or more texts that its errors must contain.
     """
     done = ran(program, *arguments, timeout=120 * PATIENCE, **options)
     assert code in (None, done.returncode), f"{done.returncode}: {done.stdout}{done.stderr}"
-    for text in [told] if isinstance(told, str) else told:
+    for text in [message] if isinstance(message, str) else message:
         assert text in done.stderr, f"{text!r} is not in {done.stderr!r}"
     return done
 

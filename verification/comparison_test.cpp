@@ -108,7 +108,7 @@ TEST_F(LimitTest, method_that_must_fail_is_caught_when_it_does_not) {
   EXPECT_FALSE(check(above("tl-none", 0.5), curve).holds);
 }
 
-TEST_F(LimitTest, what_was_not_computed_does_not_hold) {
+TEST_F(LimitTest, missing_figures_break_limits) {
   EXPECT_FALSE(check(below("tl-full", "auto", 1.0), curve).holds);
   EXPECT_FALSE(check(above("tl-full", 0.0), curve).holds);
 }

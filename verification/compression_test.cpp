@@ -103,7 +103,7 @@ TYPED_TEST(RestControlTest, no_compression_softens_hourglass_modes_to_nothing) {
     using Law = typename TypeParam::Law;
     const auto law = sample_law<Law>(0.49);
     const auto X = box_nodes(edges);
-    const HourglassBlock at_rest =
+    const HourglassBlock undeformed =
         hourglass_block<typename TypeParam::Kernel>(X, NodalVectors<double>{}, law);
     for (const Vector& f : states) {
       const HourglassBlock block = hourglass_block<typename TypeParam::Kernel>(X, stretched(X, f), law);
@@ -112,7 +112,7 @@ TYPED_TEST(RestControlTest, no_compression_softens_hourglass_modes_to_nothing) {
         phi = (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) / 3.0 * std::pow(f[0] * f[1] * f[2], -2.0 / 3.0);
       }
       double largest = 1.0;
-      HourglassBlock expected = at_rest;
+      HourglassBlock expected = undeformed;
       if constexpr (FollowsDeformation<Hourglass> && !is_linear<Method>) {
         largest = *std::max_element(f.begin(), f.end());
         for (int m = 0; m < 12; ++m) {
@@ -123,7 +123,7 @@ TYPED_TEST(RestControlTest, no_compression_softens_hourglass_modes_to_nothing) {
       const double roundoff = 1e-13 * law.bulk_modulus() * edges[0];
       EXPECT_LT(largest_entry(block - expected), roundoff + 1e-12 * largest_entry(expected));
       if constexpr (Hourglass::traits.active) {
-        const double floor = phi * smallest_eigenvalue(at_rest) / (largest * largest);
+        const double floor = phi * smallest_eigenvalue(undeformed) / (largest * largest);
         EXPECT_GT(floor, 0.0);
         EXPECT_GT(smallest_eigenvalue(block), floor * (1.0 - 1e-9) - roundoff);
       }

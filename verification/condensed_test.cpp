@@ -39,7 +39,7 @@ TEST(CondensedTest, free_components_of_driven_nodes_are_free) {
   EXPECT_GT(std::abs(u[index(scene.sets.at("head").front())][0]), 1e-4);  // the head contracts
 }
 
-TEST(CondensedTest, takes_one_step_and_tells_its_residual_and_its_work) {
+TEST(CondensedTest, takes_one_step_and_reports_its_residual_and_its_work) {
   const Scene scene = distorted_bar({0.03, -0.01, 0.02});
   Recorder recorder;
   const Relaxation answer = relax(Model(scene, condensed_method), recorder);

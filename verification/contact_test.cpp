@@ -256,7 +256,7 @@ TEST(Contact, balances_the_other_reactions) {
 }
 
 /// The weight of a block is carried by the ground that it stands on, although nothing else holds it up.
-TEST(Contact, carries_a_block_at_rest) {
+TEST(Contact, carries_a_block_in_equilibrium) {
   Column block({1.0, 1.0, 1.0}, {3, 3, 3}, NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
   block.description.displacements = {{"side", {}, {true, false, false}}, {"back", {}, {false, true, false}}};
   block.description.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}}};
@@ -313,7 +313,7 @@ TEST(Contact, lets_a_block_rest) {
   block.description.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
   block.description.forces.of<Obstacle>() = {ground()};
   block.description.dynamics.check_interval = 100;
-  const Scene at_rest = block.scene();
+  const Scene static_scene = block.scene();
   block.description.dynamics.time_step = 0.005;
   block.description.dynamics.duration = 500.0;
   const Scene scene = block.scene();
@@ -416,8 +416,8 @@ TEST(Contact, rejects_wrong_input) {
   const auto path = folder.write("pressed.toml", base + sphere + "friction = 0.2\n");
   const Scene rubbing = read_scene(path);
   Recorder silent;
-  const auto at_rest = input_error([&] { relax(Model(rubbing, {"tl-perturbation"}), silent); });
-  EXPECT_NE(at_rest.find("friction depends on the path"), std::string::npos) << at_rest;
+  const auto refusal = input_error([&] { relax(Model(rubbing, {"tl-perturbation"}), silent); });
+  EXPECT_NE(refusal.find("friction depends on the path"), std::string::npos) << refusal;
   const auto asleep = input_error([&] { relax_awake(rubbing, {"tl-perturbation"}, 0.01, silent); });
   EXPECT_NE(asleep.find("allowed: a case without [[obstacle]]"), std::string::npos) << asleep;
 }

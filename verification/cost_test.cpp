@@ -94,10 +94,10 @@ TEST_P(OwnMotionTest, has_the_steps_of_a_simulation) {
   // Over a shorter motion, the cautious steps of the first half crossing count twice as much.
   EXPECT_NEAR(*motion.mean_step, slower, 0.04 * slower);
   const Model model(scene, choice);
-  const double at_rest = 0.9 * stable_step(model, NodalField(scene.mesh.points.size())).step;
+  const double undeformed_step = 0.9 * stable_step(model, NodalField(scene.mesh.points.size())).step;
   const double at_end = 0.9 * stable_step(model, motion.end).step;
-  EXPECT_LT(at_end, 0.8 * at_rest);  // otherwise the test could not distinguish them
-  EXPECT_LT(*motion.mean_step, 0.95 * at_rest);
+  EXPECT_LT(at_end, 0.8 * undeformed_step);  // otherwise the test could not distinguish them
+  EXPECT_LT(*motion.mean_step, 0.95 * undeformed_step);
   EXPECT_GT(*motion.mean_step, 1.05 * at_end);
 }
 
@@ -171,7 +171,7 @@ TEST(OwnMotion, says_why_it_fails) {
   EXPECT_EQ(costings[0].cost->remark, motion.remark);
 }
 
-TEST(OwnMotion, ends_when_told) {
+TEST(OwnMotion, ends_when_interrupted) {
   const Scene scene = scene_of(pressed(0.02));
   EXPECT_THROW(follow_own_motion(scene, {"tl-perturbation"}, [](double) { return false; }), ComputationError);
 }

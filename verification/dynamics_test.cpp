@@ -92,12 +92,12 @@ TYPED_TEST(DynamicsTest, one_element_oscillates_with_its_frequency) {
 /// Displacements at times between steps, with omega dt = 0.3, come from a cubic through the motion, which is
 /// (omega dt)^4 / 384 = 2e-5 of the amplitude off. A straight line would be a hundredth off, a step's delay
 /// three tenths.
-TYPED_TEST(DynamicsTest, tells_displacements_at_any_time) {
+TYPED_TEST(DynamicsTest, reports_displacements_at_any_time) {
   struct Asking final : Observer {
-    double next_sample() const override { return told.size() < times.size() ? times[told.size()] : 1e9; }
-    void sample(const NodalField& u) override { told.push_back(u[corner]); }
+    double next_sample() const override { return seen.size() < times.size() ? times[seen.size()] : 1e9; }
+    void sample(const NodalField& u) override { seen.push_back(u[corner]); }
     std::vector<double> times;
-    std::vector<Vector> told;
+    std::vector<Vector> seen;
   } asking;
   const double h = 0.02, speed = 1e-6;
   const auto law = this->law();
@@ -107,11 +107,11 @@ TYPED_TEST(DynamicsTest, tells_displacements_at_any_time) {
   scene.settings.dynamics = settings(20 * dt, dt);
   for (const double n : {0.4, 0.7, 3.0, 7.5, 12.25, 12.75, 20.0}) asking.times.push_back(n * dt);
   integrate(Model(scene, {this->method(), {}}), asking);
-  ASSERT_EQ(asking.told.size(), asking.times.size());
+  ASSERT_EQ(asking.seen.size(), asking.times.size());
   const double phi = 2 * std::asin(omega * dt / 2);
   for (std::size_t n = 0; n < asking.times.size(); ++n) {
     const double u = speed * dt * std::sin(phi * asking.times[n] / dt) / std::sin(phi);
-    EXPECT_NEAR(asking.told[n][0], u, 1e-3 * speed / omega) << "time " << n;
+    EXPECT_NEAR(asking.seen[n][0], u, 1e-3 * speed / omega) << "time " << n;
   }
 }
 

@@ -186,16 +186,16 @@ TYPED_TEST(EigenvalueTest, bending_and_torsion_energies) {
 // and more than 100 meshes, undeformed and strongly deformed; verification/sharpness.cpp prints the
 // distribution of more.
 
-TYPED_TEST(EigenvalueTest, step_is_safe_for_elements_at_rest) {
-  this->expect_safe(true, at_rest, 190);
+TYPED_TEST(EigenvalueTest, step_is_safe_for_undeformed_elements) {
+  this->expect_safe(true, undeformed, 190);
 }
 
 TYPED_TEST(EigenvalueTest, step_is_safe_for_strongly_deformed_elements) {
   this->expect_safe(true, strongly_deformed, 190);
 }
 
-TYPED_TEST(EigenvalueTest, step_is_safe_for_meshes_at_rest) {
-  this->expect_safe(false, at_rest, 2);
+TYPED_TEST(EigenvalueTest, step_is_safe_for_undeformed_meshes) {
+  this->expect_safe(false, undeformed, 2);
 }
 
 TYPED_TEST(EigenvalueTest, step_is_safe_for_strongly_deformed_meshes) {

@@ -130,7 +130,7 @@ struct TestTypes<TypeList<Parts...>> {
 };
 TYPED_TEST_SUITE(VolumetricPartTest, TestTypes<VolumetricParts>::type);
 
-TYPED_TEST(VolumetricPartTest, has_its_derivatives_and_the_bulk_modulus_at_rest) {
+TYPED_TEST(VolumetricPartTest, has_its_derivatives_and_the_bulk_modulus_when_undeformed) {
   for (const double x : {-0.9, -0.3, -1e-3, 0.0, 1e-6, 0.4, 1.5}) {
     const Dual<double> moving(x, 1.0);
     const double slope = TypeParam::slope(x), curvature = TypeParam::curvature(x);
@@ -143,7 +143,7 @@ TYPED_TEST(VolumetricPartTest, has_its_derivatives_and_the_bulk_modulus_at_rest)
 }
 
 /// No digits are lost near the undeformed shape, in single precision either.
-TYPED_TEST(VolumetricPartTest, nothing_cancels_near_rest) {
+TYPED_TEST(VolumetricPartTest, nothing_cancels_at_small_strains) {
   for (const float x : {1e-3F, -1e-4F, 1e-6F, -1e-8F}) {
     EXPECT_NEAR(TypeParam::energy(x) / (0.5F * x * x), 1.0F, 2e-6F + 2.0F * std::abs(x));
     EXPECT_NEAR(TypeParam::slope(x) / x, 1.0F, 1e-6F + 2.0F * std::abs(x));
@@ -151,7 +151,7 @@ TYPED_TEST(VolumetricPartTest, nothing_cancels_near_rest) {
 }
 
 /// The two parts other than the law's own, at a known value: J = 2.
-TEST(VolumetricPart, is_what_its_name_says) {
+TEST(VolumetricPart, has_known_values) {
   EXPECT_DOUBLE_EQ(LogarithmicPart::energy(1.0), 0.5 * std::log(2.0) * std::log(2.0));
   EXPECT_DOUBLE_EQ(QuadraticLogarithmicPart::energy(1.0), 0.25 * (3.0 - 2.0 * std::log(2.0)));
   const CalledLaw law(sample_law<NeoHookean>(0.45), LogarithmicPart{});

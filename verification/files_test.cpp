@@ -195,7 +195,7 @@ TEST(ResultFile, keeps_the_former_result_until_commit) {
   EXPECT_EQ(fs::file_size(folder / "result.h5"), 6U);
 }
 
-TEST(ResultFile, missing_folder_is_told_before_the_work) {
+TEST(ResultFile, missing_folder_is_reported_before_the_work) {
   const TemporaryFolder folder;
   const Scene scene = pulled_block();
   const Model model(scene, {"tl-none", {}});
@@ -266,13 +266,13 @@ TEST_F(ReferenceFileTest, with_too_few_nodes_is_refused) {
   EXPECT_TRUE(contains(error(), "'/displacement' has shape [17, 3]; it must be [18, 3]"));
 }
 
-TEST_F(ReferenceFileTest, with_a_number_that_is_none_is_refused) {
+TEST_F(ReferenceFileTest, with_a_number_that_is_not_finite_is_refused) {
   u[4][1] = NAN;
   write_reference(path, u, scene.case_hash, scene.mesh_hash);
   EXPECT_TRUE(contains(error(), "at node 4; every value must be finite"));
 }
 
-TEST_F(ReferenceFileTest, missing_truncated_and_foreign_files_are_told_apart) {
+TEST_F(ReferenceFileTest, missing_truncated_and_foreign_files_are_distinguished) {
   EXPECT_TRUE(contains(error(), "golden.h5: no such file"));
   folder.write("golden.h5", "this is no HDF5 file");
   EXPECT_TRUE(contains(error(), "golden.h5: is not a complete HDF5 file"));

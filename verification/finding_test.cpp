@@ -90,7 +90,7 @@ TEST(Judge, a_golden_near_the_truth_or_without_one_judges_all) {
   EXPECT_EQ(judge({0.02, 0.0, 1.0, 1.5}, {}), Finding::locking);
 }
 
-TEST(Diagnose, tells_the_ways_to_be_wrong_from_each_other) {
+TEST(Diagnose, distinguishes_the_ways_to_be_wrong) {
   const double limit = 0.02;
   EXPECT_EQ(diagnose({0.02, 0.9, 3.0, 1.5}, limit), Finding::good);
   EXPECT_EQ(diagnose({0.03, 0.1, 1.5, 1.5}, limit), Finding::hourglassing);

@@ -63,7 +63,7 @@ NodalField times(double factor, NodalField field) {
 
 class FloatBudgetTest : public ::testing::TestWithParam<std::string> {
  protected:
-  NodalField at_rest_in(const Scene& scene, Precision precision) const {
+  NodalField static_answer(const Scene& scene, Precision precision) const {
     const Model model(scene, {GetParam(), {}, precision});
     Observer silent;
     const Relaxation found = relax(model, silent);
@@ -82,17 +82,17 @@ class FloatBudgetTest : public ::testing::TestWithParam<std::string> {
 /// budget is D eps K / mu, times three: the root of the eight nodes whose roundings meet in an element.
 /// Measured: 1.3 to 2.7e-6 of D, a third of the budget of 8.9e-6. A law that subtracts 1 from numbers near 1
 /// at small strains would lose another factor of 1 / strain.
-double budget_at_rest(const Scene& scene) {
+double static_budget(const Scene& scene) {
   const auto& law = std::get<NeoHookean>(scene.materials.list.front().law);
   return 3.0 * roundoff * law.bulk_modulus() / law.shear_modulus() * largest_imposed(scene);
 }
 
-TEST_P(FloatBudgetTest, at_rest) {
+TEST_P(FloatBudgetTest, static_answers) {
   for (const char* name : {"column", "ellipsoid-touch"}) {
     const Scene scene = canonical(name);
-    const NodalField u = at_rest_in(scene, Precision::double_precision);
-    const NodalField rounded = at_rest_in(scene, Precision::single_precision);
-    EXPECT_LT(largest_distance(rounded, u), budget_at_rest(scene)) << name;
+    const NodalField u = static_answer(scene, Precision::double_precision);
+    const NodalField rounded = static_answer(scene, Precision::single_precision);
+    EXPECT_LT(largest_distance(rounded, u), static_budget(scene)) << name;
     EXPECT_GT(largest_distance(rounded, u), roundoff * largest_imposed(scene))
         << "float was not computed in float";
   }
@@ -100,11 +100,11 @@ TEST_P(FloatBudgetTest, at_rest) {
 
 /// The budget shrinks with the displacements, since laws are exact at small strains. At half a percent, J - 1
 /// taken from J as (1 + (J - 1)) - 1 breaks it; the cases' larger strains hide that.
-TEST_P(FloatBudgetTest, at_rest_near_rest) {
+TEST_P(FloatBudgetTest, static_answers_at_small_strains) {
   Scene scene = canonical("column");
   scene = scaled(std::move(scene), 0.01);
-  const NodalField u = at_rest_in(scene, Precision::double_precision);
-  EXPECT_LT(largest_distance(at_rest_in(scene, Precision::single_precision), u), budget_at_rest(scene));
+  const NodalField u = static_answer(scene, Precision::double_precision);
+  EXPECT_LT(largest_distance(static_answer(scene, Precision::single_precision), u), static_budget(scene));
 }
 
 /// Neither units nor position matter: positions far away, rounded to float, would be off by 1000 eps of the
@@ -112,13 +112,13 @@ TEST_P(FloatBudgetTest, at_rest_near_rest) {
 TEST_P(FloatBudgetTest, at_rest_in_other_units_and_far_away) {
   const CaseOnMesh problem = canonical_case("column");
   const Scene scene = make_scene(problem);
-  const NodalField u = at_rest_in(scene, Precision::double_precision);
+  const NodalField u = static_answer(scene, Precision::double_precision);
   const auto distance = [&](const CaseOnMesh& other, double unit) {
-    return largest_distance(times(unit, at_rest_in(make_scene(other), Precision::single_precision)), u);
+    return largest_distance(times(unit, static_answer(make_scene(other), Precision::single_precision)), u);
   };
-  EXPECT_LT(distance(in_millimetres(problem), 1e-3), budget_at_rest(scene));
-  EXPECT_LT(distance(far_away(problem), 1.0), budget_at_rest(scene));
-  EXPECT_LT(distance(in_millimetres(far_away(problem)), 1e-3), budget_at_rest(scene));
+  EXPECT_LT(distance(in_millimetres(problem), 1e-3), static_budget(scene));
+  EXPECT_LT(distance(far_away(problem), 1.0), static_budget(scene));
+  EXPECT_LT(distance(in_millimetres(far_away(problem)), 1e-3), static_budget(scene));
 }
 
 /// A block of 96 elements on its foot, moving sideways, for a number of steps of half the stable one.

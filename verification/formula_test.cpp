@@ -49,7 +49,7 @@ TEST(Formula, values_are_those_of_40_digits) {
   }
 }
 
-TEST(Formula, what_is_wrong_is_named_with_its_position) {
+TEST(Formula, mistakes_are_named_with_their_position) {
   const TemporaryFolder folder;
   const toml::table known = formulas();
   for (const auto& node : *known["wrong"].as_array()) {

@@ -51,7 +51,7 @@ class FormulationTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(FormulationTest, ElasticMethodWithLawTypes, EntryName);
 
-TYPED_TEST(FormulationTest, tangent_at_rest_has_the_right_rank) {
+TYPED_TEST(FormulationTest, undeformed_tangent_has_the_right_rank) {
   for (int n = 0; n < this->samples; ++n) {
     const auto s = this->sample(n);
     const auto K =

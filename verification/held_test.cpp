@@ -312,7 +312,7 @@ TEST(Held, finds_hinges) {
 }
 
 /// A static case is refused with a list of free motions before anything is computed.
-TEST(Held, is_required_for_an_answer_at_rest) {
+TEST(Held, is_required_for_a_static_answer) {
   const Scene scene = held_at({{0, xyz}});
   Recorder recorder;
   try {

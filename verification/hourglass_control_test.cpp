@@ -64,7 +64,7 @@ TYPED_TEST_SUITE(ControlWithLawTest, LawTypes, EntryName);
 
 /// One point with the stabilization matrix IS the mean-dilatation element in the undeformed state: the same
 /// tangent for any shape. A matrix with the centre's Jacobian, or from q / 8, would fail.
-TYPED_TEST(ControlWithLawTest, stabilization_matrix_is_mean_dilatation_at_rest) {
+TYPED_TEST(ControlWithLawTest, stabilization_matrix_is_mean_dilatation_when_undeformed) {
   using OnePointForm = NodalForm<FormulationOf<TlStabilizationMatrix, TypeParam>>;
   using EightPointForm = NodalForm<FormulationOf<TlMeanDilatation, TypeParam>>;
   for (int n = 0; n < 100; ++n) {

@@ -113,7 +113,7 @@ TYPED_TEST(LawTest, energy_does_not_depend_on_the_material_direction) {
   }
 }
 
-TYPED_TEST(LawTest, tangent_at_rest_is_linear_elasticity) {
+TYPED_TEST(LawTest, undeformed_tangent_is_linear_elasticity) {
   for (int n = 0; n < 4; ++n) {
     const auto law = this->law(n);
     for (std::size_t k = 0; k < 9; ++k) {
@@ -126,7 +126,7 @@ TYPED_TEST(LawTest, tangent_at_rest_is_linear_elasticity) {
 
 /// At small strain the law is linear elasticity up to O(|H|). Written in F, the energy at |H| = 1e-6 would
 /// have an error of eps/|H|^2 = 2e-4, the stress at |H| = 1e-9 one of 2e-7; both would fail here.
-TYPED_TEST(LawTest, nothing_cancels_near_rest) {
+TYPED_TEST(LawTest, nothing_cancels_at_small_strains) {
   for (const double size : {1e-4, 1e-6, 1e-9}) {
     for (int n = 0; n < this->samples; ++n) {
       const auto law = this->law(n);
@@ -190,7 +190,7 @@ TYPED_TEST(LawTest, single_precision_is_accurate_near_rest) {
   }
 }
 
-TYPED_TEST(LawTest, tangent_bound_is_sharp_at_rest) {
+TYPED_TEST(LawTest, tangent_bound_is_sharp_when_undeformed) {
   for (int n = 0; n < 4; ++n) {
     const auto law = this->law(n);
     const auto bound = tangent_bound(law, Tensor<double>{});

@@ -19,7 +19,7 @@ TYPED_TEST_SUITE(SmallStrainLawTest, LawTypes, EntryName);
 
 /// The stress of a small strain is the derivative of the law's stress in the undeformed state, to which
 /// rotation does not contribute: for any H the slope of P along H is the stress of sym(H).
-TYPED_TEST(SmallStrainLawTest, stress_is_the_tangent_at_rest) {
+TYPED_TEST(SmallStrainLawTest, stress_is_the_undeformed_tangent) {
   RandomGeometry random(31);
   for (const double nu : poisson_ratios) {
     const auto any = sample_law<TypeParam>(nu);

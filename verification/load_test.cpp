@@ -170,7 +170,7 @@ TYPED_TEST(LoadTest, bar_under_end_load_has_uniaxial_stress) {
 
 /// With loads but no internal forces yet, a body is out of balance by all of its loads: the residual is one,
 /// at any factor of the loads.
-TEST(Residual, is_told_over_the_loads) {
+TEST(Residual, is_relative_to_the_loads) {
   const Scene scene = pulled_bar(sample_law<NeoHookean>(0.3), 2.0);
   const Model model(scene, {"tl-perturbation"});
   Body<double> body(model, *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force()));

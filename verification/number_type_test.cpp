@@ -172,7 +172,7 @@ TEST(Counted, the_hourglass_control_in_modes_stays_below_246_operations) {
   EXPECT_EQ(sum.total(), count.total.total());
 }
 
-TEST(Counted, tells_the_kinds_apart_and_skips_constants) {
+TEST(Counted, distinguishes_the_kinds_and_skips_constants) {
   Operations tally;
   const Counted x(2.0, tally);
   const Counted y = sqrt(x * x + Counted(1.0) * Counted(3.0)) / -x;

@@ -37,7 +37,7 @@ void for_each_pair(const Visit& visit) {
 /// The law of a body without relaxation: viscoelastic parts are the subject of viscoelastic_test.cpp and are
 /// kept from relaxing here.
 template <class Law>
-Law law_at_rest(double nu) {
+Law law_without_relaxation(double nu) {
   Law law = sample_law<Law>(nu);
   if constexpr (law_remembers<Law>) law.relaxation_1 = law.relaxation_2 = 0.0;
   return law;
@@ -65,7 +65,7 @@ TEST(Pairs, uniform_strain_gives_the_stress_of_the_law) {
       const NodalVectors<double> X = fitting_hexahedron<FormulationOf<Method, NeoHookean>>(random);
       const Tensor<double> H = random.deformation(0.7, 1.4) - identity<double>();
       const auto [mesh, u] = one_strained_element(X, H);
-      const Law law = law_at_rest<Law>(0.45);
+      const Law law = law_without_relaxation<Law>(0.45);
       const Scene scene = make_scene(plain_case(law), mesh);
       const auto bound = tangent_bound(law, H);
       expect_forces(internal_forces(Model(scene, choice<MethodWithLaw<Method, Law>>()), u), X,
@@ -99,7 +99,7 @@ Finding found_on(const Scene& scene, std::string_view method, const NodalField& 
   try {
     const Relaxation answer = relax(Model(scene, {std::string(method)}), silent);
     const double energy = answer.energies.strain + answer.energies.hourglass;
-    if (!answer.converged) return Finding::not_at_rest;
+    if (!answer.converged) return Finding::no_equilibrium;
     return diagnose(symptoms(scene, answer.u, energy, golden, 0.233), limit);
   } catch (const ComputationError&) {
     return Finding::inverted;

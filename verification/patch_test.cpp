@@ -118,8 +118,8 @@ class PatchTest : public ::testing::Test {
     const Tensor<double> F = identity<double>() + H;
     const Tensor<double> sigma =
         is_linear<typename Pair::Method> ? P : (1.0 / determinant(F)) * (P * transpose(F));
-    const std::vector<double> told = recorder.frames.back().stresses;
-    for (std::size_t n = 0; n < told.size(); ++n) EXPECT_NEAR(told[n], sigma.entries[n % 9], tolerance);
+    const std::vector<double> cauchy = recorder.frames.back().stresses;
+    for (std::size_t n = 0; n < cauchy.size(); ++n) EXPECT_NEAR(cauchy[n], sigma.entries[n % 9], tolerance);
     const Vector pull = traction(model, answer.u);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(pull[index(i)], P(i, 0), tolerance);
   }

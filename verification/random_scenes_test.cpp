@@ -12,7 +12,7 @@ namespace sandglass::verification {
 namespace {
 
 /// Solves a static scene, checks the answer with a plain assembly, and returns the number of evaluations.
-long evaluations_to_rest(long seed, long number) {
+long evaluations_to_equilibrium(long seed, long number) {
   const std::string which = fmt::format("scene {} of seed {}", number, seed);
   RandomScene random(seed, number);
   const Scene scene = random.scene();
@@ -38,13 +38,13 @@ long evaluations_to_rest(long seed, long number) {
 }
 
 /// For more or other scenes: SANDGLASS_SCENES=500 SANDGLASS_SEED=7 random_scenes_test.
-TEST(RandomScenes, come_to_rest) {
+TEST(RandomScenes, reach_equilibrium) {
   const long first = from_environment("SANDGLASS_FIRST", 0), count = from_environment("SANDGLASS_SCENES", 25);
   const long seed = from_environment("SANDGLASS_SEED", 20);
   std::vector<long> evaluations;
   for (long number = first; number < first + count; ++number) {
     try {
-      evaluations.push_back(evaluations_to_rest(seed, number));
+      evaluations.push_back(evaluations_to_equilibrium(seed, number));
     } catch (const ComputationError& error) {
       ADD_FAILURE() << "scene " << number << " of seed " << seed << ": " << error.what();
     }
@@ -90,7 +90,7 @@ Scene random_inflation(long seed, long number) {
 }
 
 /// The same variables as above run more scenes.
-TEST(RandomScenes, inflated_bodies_come_to_rest) {
+TEST(RandomScenes, inflated_bodies_reach_equilibrium) {
   const long first = from_environment("SANDGLASS_FIRST", 0), count = from_environment("SANDGLASS_SCENES", 10);
   const long seed = from_environment("SANDGLASS_SEED", 20);
   std::vector<long> evaluations;
@@ -135,9 +135,9 @@ TEST(RandomScenes, a_thin_cup_takes_few_evaluations) {
 
 /// In the first two, an element is inverted at a load level whose residual is small enough for the next
 /// level; the last buckles, and its forces do not fall for 100 steps of descent.
-TEST(RandomScenes, that_failed_once_come_to_rest) {
+TEST(RandomScenes, that_failed_once_reach_equilibrium) {
   for (const auto& [seed, number] : {std::pair{1L, 290L}, {2L, 34L}, {2L, 433L}}) {
-    EXPECT_NO_THROW(evaluations_to_rest(seed, number)) << "scene " << number << " of seed " << seed;
+    EXPECT_NO_THROW(evaluations_to_equilibrium(seed, number)) << "scene " << number << " of seed " << seed;
   }
 }
 

@@ -32,10 +32,10 @@ Scene block(const AnyLaw& law, bool quasi_static, const std::array<int, 3>& elem
 
 /// The bits of everything that a run reports.
 std::vector<std::uint64_t> told_by(const Scene& scene, const MethodChoice& choice) {
-  KeepingRecorder told;
+  KeepingRecorder recorder;
   const Model model(scene, choice);
-  const NodalField u = scene.settings.quasi_static ? relax(model, told).u : integrate(model, told).u;
-  return bits_of(told.run(), u);
+  const NodalField u = scene.settings.quasi_static ? relax(model, recorder).u : integrate(model, recorder).u;
+  return bits_of(recorder.run(), u);
 }
 
 void expect_same_bits(const Scene& scene, const std::string& method, int count, int threads = 1) {
@@ -177,7 +177,7 @@ TEST(Ranks, too_many_are_refused) {
   }
 }
 
-TEST(Ranks, what_is_not_divided_is_refused) {
+TEST(Ranks, unsupported_features_are_refused) {
   Scene scene = block(sample_law<NeoHookean>(0.45), false, {4, 4, 18});
   scene.settings.dynamics.subcycles = 4;
   const auto messages = ThreadRanks(2).run([&](std::shared_ptr<const Ranks> ranks) -> std::string {

@@ -50,33 +50,33 @@ std::optional<Problem> enlarged(Problem problem) {
 }
 
 /// Everything that a run reports.
-struct Told {
+struct RunOutput {
   std::string words;
   std::vector<std::uint64_t> bits;
-  bool operator==(const Told&) const = default;
+  bool operator==(const RunOutput&) const = default;
 };
 
-Told told_by(const Scene& scene, const MethodChoice& choice, KeepingRecorder& recorder,
-             const Checkpoint* from = nullptr) {
+RunOutput output_of(const Scene& scene, const MethodChoice& choice, KeepingRecorder& recorder,
+                    const Checkpoint* from = nullptr) {
   const Answer answer = run(scene, choice, recorder, from);
   return {answer.failure + answer.words, bits_of(recorder.run(), answer.u)};
 }
 
-Told told_by(const Problem& problem) {
+RunOutput output_of(const Problem& problem) {
   KeepingRecorder recorder;
-  return told_by(problem.scene(), problem.choice, recorder);
+  return output_of(problem.scene(), problem.choice, recorder);
 }
 
-Verdict same(const Told& one, const Told& other) {
+Verdict same(const RunOutput& one, const RunOutput& other) {
   return held_if(one == other, one == other ? 0.0 : 1.0, one.words + " / " + other.words);
 }
 
 Verdict threads(const Problem& problem, const Answer& /*own*/, RandomGeometry& /*random*/) {
   auto larger = enlarged(problem);
   if (!larger) return {};
-  const Told alone = told_by(*larger);
+  const RunOutput alone = output_of(*larger);
   larger->choice.threads = 3;
-  return same(alone, told_by(*larger));
+  return same(alone, output_of(*larger));
 }
 
 Verdict ranks(const Problem& problem, const Answer& /*own*/, RandomGeometry& /*random*/) {
@@ -85,10 +85,10 @@ Verdict ranks(const Problem& problem, const Answer& /*own*/, RandomGeometry& /*r
   const auto together = ThreadRanks(2).run([&](std::shared_ptr<const Ranks> own) {
     Problem shared = *larger;
     shared.choice.ranks = std::move(own);
-    return told_by(shared);
+    return output_of(shared);
   });
   if (together[0].words.starts_with("refused")) return {};  // some features are not divided
-  return same(together[0], together[0] == together[1] ? told_by(*larger) : together[1]);
+  return same(together[0], together[0] == together[1] ? output_of(*larger) : together[1]);
 }
 
 /// A rounding of displacements is a pressure of K eps u / h in elements, to which a body yields in shear by K
@@ -108,11 +108,11 @@ Verdict precision(const Problem& problem, const Answer& own, RandomGeometry& /*r
   constexpr double roundoff = 0x1p-24;
   const double slenderness = diagonal(problem.mesh.points) / shortest_edge(problem.mesh);
   const double times =
-      problem.at_rest() ? 6.0 * slenderness * slenderness : static_cast<double>(problem.steps);
+      problem.is_static() ? 6.0 * slenderness * slenderness : static_cast<double>(problem.steps);
   // Frequencies of bodies are accurate to a thousandth, and elements take small steps in groups: rounding
   // decides the steps, on which the error of central differences depends.
   const auto& dynamics = problem.description.dynamics;
-  const bool rounded = !problem.at_rest() && dynamics.time_step == 0.0 &&
+  const bool rounded = !problem.is_static() && dynamics.time_step == 0.0 &&
                        (dynamics.body_frequency == 1 || dynamics.subcycles > 1);
   const double steps_differ = rounded ? 1e-3 : 0.0;
   const double budget =
@@ -129,12 +129,12 @@ Verdict precision(const Problem& problem, const Answer& own, RandomGeometry& /*r
 Verdict resume(const Problem& problem, const Answer& /*own*/, RandomGeometry& random) {
   const Scene scene = problem.scene();
   KeepingRecorder whole;
-  const Told uninterrupted = told_by(scene, problem.choice, whole);
+  const RunOutput uninterrupted = output_of(scene, problem.choice, whole);
   if (whole.kept().empty()) return {};
   const double place = random.uniform(0.0, static_cast<double>(whole.kept().size()));
   const RunSoFar& kept = whole.kept()[static_cast<std::size_t>(place)];
   KeepingRecorder rest(kept);
-  return same(uninterrupted, told_by(scene, problem.choice, rest, &kept.point));
+  return same(uninterrupted, output_of(scene, problem.choice, rest, &kept.point));
 }
 
 Verdict case_file(const Problem& problem, const Answer& own, RandomGeometry& /*random*/) {
@@ -163,9 +163,10 @@ void for_each_step(const Problem& problem, const Move& move) {
 /// sets, or if static loads have curves, which `settle` evaluates at the current time.
 std::optional<std::string> text_for_program(Problem problem) {
   bool fits = problem.element_sets.empty() && !problem.method().is_condensed &&
-              (problem.at_rest() || problem.description.dynamics.time_step > 0.0);
-  for_each_curve(problem.description,
-                 [&](const LoadCurve& curve) { fits = fits && (curve.times.empty() || !problem.at_rest()); });
+              (problem.is_static() || problem.description.dynamics.time_step > 0.0);
+  for_each_curve(problem.description, [&](const LoadCurve& curve) {
+    fits = fits && (curve.times.empty() || !problem.is_static());
+  });
   return fits ? text_of(problem) : std::nullopt;
 }
 
@@ -176,11 +177,11 @@ MeshArrays arrays_of(const Problem& problem) {
 /// The library against a run: the same steps, or the same equilibrium.
 Verdict simulation(const Problem& problem, const Answer& own, RandomGeometry& /*random*/) {
   const auto text = text_for_program(problem);
-  if (!text || (own.failure == "failed" && !problem.at_rest())) return {};  // takes shorter steps
+  if (!text || (own.failure == "failed" && !problem.is_static())) return {};  // takes shorter steps
   double shortest = INFINITY;
   const Answer other = attempt([&] {
     Simulation<double> body(arrays_of(problem), *text);
-    if (problem.at_rest()) {
+    if (problem.is_static()) {
       body.impose(1.0);
       body.settle();
     }
@@ -217,7 +218,7 @@ Verdict batch(const Problem& given, const Answer& /*own*/, RandomGeometry& rando
   }
   for (double* time : {&d.dynamics.time_step, &d.dynamics.duration, &d.dynamics.ramp_time}) *time *= 0.2;
   const auto text = text_for_program(problem);
-  if (!text || problem.at_rest()) return {};
+  if (!text || problem.is_static()) return {};
   const Answer own = answer_of(problem);
   if (!own.failure.empty()) return {};
   const Answer other = attempt([&] {
@@ -277,7 +278,7 @@ constexpr auto relations = std::to_array<Relation>({
     {"tables as formulas", [](P problem, A own, R) { return compare(problem, own, with_formulas(problem)); }},
     {"frames",
      [](P problem, A own, R) {
-       if (problem.at_rest() || !own.failure.empty()) return Verdict{};
+       if (problem.is_static() || !own.failure.empty()) return Verdict{};
        Problem other = problem;
        other.description.dynamics.frames += 4;
        const Answer answer = answer_of(other);
@@ -329,7 +330,7 @@ TEST(Relations, hold) {
       counts[relation.name].add(verdict);
       const std::string what = fmt::format(
           "{}, problem {} of seed {}, {} {}: {:.2e} {}", relation.name, number, seed, problem.choice.method,
-          problem.at_rest() ? "at rest" : "in motion", verdict.difference, verdict.words);
+          problem.is_static() ? "at rest" : "in motion", verdict.difference, verdict.words);
       if (verdict.kind == Kind::explained || verdict.kind == Kind::open)
         fmt::print("{}: {}\n", verdict.kind == Kind::open ? "open" : "explained", what);
       if (verdict.kind == Kind::violated) ADD_FAILURE() << what;

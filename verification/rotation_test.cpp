@@ -143,7 +143,7 @@ TYPED_TEST(RotationTest, rigid_rotation_needs_neither_force_nor_work) {
 /// The work of a turning head equals the static body's energy. Without free nodes every level is an
 /// equilibrium: work from the mean of the forces at both ends of a level then has an error of second order in
 /// the level, and none where forces are linear. A straight path would give a fraction of the work.
-TYPED_TEST(RotationTest, work_at_rest_is_the_stored_energy) {
+TYPED_TEST(RotationTest, static_work_is_the_stored_energy) {
   const auto imbalance = [&](int levels) {
     Case description = plain_case(sample_law<NeoHookean>(0.45));
     const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 1});
@@ -329,7 +329,7 @@ TEST(RotationInput, hash_follows_the_rotation) {
   }
 }
 
-TEST(RotationInput, bad_ones_are_told) {
+TEST(RotationInput, bad_ones_are_reported) {
   const TemporaryFolder folder;
   const std::vector<std::array<std::string, 3>> bad{
       {"[0.0, 0.0, 2.0]", "[0.0, 0.0, 0.0]", "rotation.axis = [0, 0, 0] must not be zero"},

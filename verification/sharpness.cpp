@@ -31,7 +31,8 @@ int print_pair(int elements, int meshes, std::uint64_t seed) {
     const int samples = single ? elements : meshes;
     if (samples == 0) continue;
     const std::string what = single ? "elements" : "meshes";
-    unsafe += print_row(Pair::label(), what + " at rest", sharpness<Pair>(random, samples, single, at_rest));
+    unsafe +=
+        print_row(Pair::label(), what + " undeformed", sharpness<Pair>(random, samples, single, undeformed));
     unsafe += print_row(Pair::label(), what + " deformed",
                         sharpness<Pair>(random, samples, single, strongly_deformed));
   }

@@ -67,7 +67,7 @@ constexpr double roundoff = 200.0 * 200.0 * 3.5e-18;  // m
 
 class MotionTest : public ::testing::TestWithParam<SimulationSettings> {};
 
-TEST_P(MotionTest, moved_by_hand_it_goes_as_the_dynamic_run) {
+TEST_P(MotionTest, moved_by_hand_it_matches_the_dynamic_run) {
   const SimulationSettings& settings = GetParam();
   const std::string text = text_of(pulled) + "check_interval = 5\n";  // levels change at every tenth check
   const Motion motion = motion_of(text, {.method = *settings.method, .kappa = settings.kappa, .threads = 2});
@@ -149,12 +149,12 @@ TEST(Simulation, forces_grow_straight_too) {
 
 TEST(Simulation, steps_shorten_as_the_body_stiffens) {
   Simulation<double> simulation(block(), text_of(pulled), {.damping = 15.0});
-  const double at_rest = simulation.step_size() / SteadyStep::first_share;
+  const double undeformed_step = simulation.step_size() / SteadyStep::first_share;
   simulation.move("head", {0.0, 0.0, -0.1});
   simulation.advance(1.0);
   // At half its height, the block is half as far from face to face, and wider.
-  EXPECT_LT(simulation.step_size(), 0.7 * at_rest);
-  EXPECT_GT(simulation.step_size(), 0.2 * at_rest);
+  EXPECT_LT(simulation.step_size(), 0.7 * undeformed_step);
+  EXPECT_GT(simulation.step_size(), 0.2 * undeformed_step);
 }
 
 TEST(Simulation, no_frame_is_too_long_for_a_stable_motion) {
@@ -250,9 +250,9 @@ TEST(Simulation, rests_after_settling) {
     simulation.move("head", {0.02, 0.01, 0.03});
     simulation.advance(0.05);
     simulation.settle();
-    const NodalField at_rest = field_of(simulation);
+    const NodalField settled = field_of(simulation);
     simulation.advance(0.05);
-    EXPECT_LT(largest_distance(field_of(simulation), at_rest), 1e-7 * 0.03) << method;
+    EXPECT_LT(largest_distance(field_of(simulation), settled), 1e-7 * 0.03) << method;
   }
 }
 
@@ -329,17 +329,17 @@ void expect_return(const char* method) {
   Simulation<Real> simulation(block(), text_of(guided) + "check_interval = 5\n", {.method = method});
   const auto* const before = simulation.displacements().data;
   simulation.move("head", gone);
-  std::string told;
+  std::string message;
   try {
     simulation.advance(frame);
   } catch (const ComputationError& error) {
-    told = error.what();
+    message = error.what();
   }
   const double whole = simulation.time();
   ASSERT_GT(whole, 0.0);
   ASSERT_LT(whole, frame);
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "element ", told);
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, fmt::format("is back at {:.6g} s", whole), told);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "element ", message);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, fmt::format("is back at {:.6g} s", whole), message);
   EXPECT_EQ(simulation.displacements().data, before);
   // Driven nodes stay until they get a new target, and the failure leaves no trace.
   const auto node = index(simulation.nodes("head")[0]);

@@ -32,7 +32,7 @@ TEST(Distances, count_elements_corner_to_corner) {
   }
 }
 
-TEST(Distances, no_way_is_told) {
+TEST(Distances, unreachable_nodes_are_marked) {
   Mesh mesh = box({2, 1, 1}, {2, 1, 1});
   mesh.cells.pop_back();
   const auto distance = Distances(mesh).from({mesh.cells[0][0]});
@@ -171,11 +171,11 @@ TEST(Sleep, everything_awake_is_the_whole) {
 
 TEST(Sleep, listeners_hear_of_the_whole_mesh) {
   const Touched scene({48, 48, 3}, 0.5e-3);
-  Recorder told;
-  const LocalRelaxation local = relax_awake(scene.scene, {.method = "tl-adaptive"}, 0.02, told);
+  Recorder recorder;
+  const LocalRelaxation local = relax_awake(scene.scene, {.method = "tl-adaptive"}, 0.02, recorder);
   const std::size_t nodes = scene.scene.mesh.points.size(), elements = scene.scene.mesh.cells.size();
-  ASSERT_GE(told.frames.size(), 2U);
-  for (const Frame& frame : told.frames) {
+  ASSERT_GE(recorder.frames.size(), 2U);
+  for (const Frame& frame : recorder.frames) {
     EXPECT_EQ(frame.u.size(), nodes);
     EXPECT_EQ(frame.v.size(), nodes);
     EXPECT_EQ(frame.jacobians.size(), elements);
@@ -183,17 +183,17 @@ TEST(Sleep, listeners_hear_of_the_whole_mesh) {
     EXPECT_EQ(frame.levels.size(), elements);
     EXPECT_EQ(frame.stresses.size(), 9 * elements);
   }
-  EXPECT_EQ(told.frames.front().time, 0.0);
-  EXPECT_EQ(told.frames.back().u, local.relaxation.u);
+  EXPECT_EQ(recorder.frames.front().time, 0.0);
+  EXPECT_EQ(recorder.frames.back().u, local.relaxation.u);
   std::size_t asleep = 0;
   for (std::size_t e = 0; e < elements; ++e) {
-    if (told.frames.back().jacobians[e] != 1.0) continue;
+    if (recorder.frames.back().jacobians[e] != 1.0) continue;
     ++asleep;
     for (const int node : scene.scene.mesh.cells[e])
       EXPECT_EQ(local.relaxation.u[index(node)], Vector{}) << e;
   }
   EXPECT_EQ(asleep, elements - local.elements);
-  EXPECT_FALSE(told.rows.empty());
+  EXPECT_FALSE(recorder.rows.empty());
   Recorder impatient;
   impatient.last_step = 0;
   EXPECT_TRUE(

@@ -1,4 +1,4 @@
-/// The stability lab: cells with known outcomes, and the properties of maps, axes and files.
+/// Stability maps: cells with known outcomes, and the properties of maps, axes and files.
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ class CellTest : public ::testing::Test {
                 double y = 0.0) {
     const Cell c = cell(map, description, method, x, y);
     EXPECT_TRUE(c.finding.has_value()) << c.status;
-    return c.finding.value_or(Finding::not_at_rest);
+    return c.finding.value_or(Finding::no_equilibrium);
   }
 
   Answers answers;
@@ -94,13 +94,13 @@ TEST_F(CellTest, noise_grows_without_control) {
 
 /// The head is pushed through the foot of a body too short to bend aside: no method has an answer, the golden
 /// included.
-TEST_F(CellTest, where_the_golden_fails_others_are_told_by_how_they_break_down) {
+TEST_F(CellTest, where_the_golden_fails_others_are_classified_by_their_breakdown) {
   Case description = cantilever();
   description.mesh = BoxMesh{{1.0, 0.2, 0.2}, {2, 2, 2}};
   description.displacements[1].value = {-0.9, 0.0, 0.0};
   const Cell c = cell("load", description, "tl-mean-dilatation", 1.5);
   EXPECT_TRUE(c.golden_failed);
-  EXPECT_TRUE(c.finding == Finding::inverted || c.finding == Finding::not_at_rest) << c.status;
+  EXPECT_TRUE(c.finding == Finding::inverted || c.finding == Finding::no_equilibrium) << c.status;
   EXPECT_NE(c.status, "ok");
 }
 
@@ -176,7 +176,7 @@ TEST(Map, asks_only_what_matters) {
   EXPECT_EQ(usual_maps(description).size(), 8u);
 }
 
-TEST(Map, tells_what_is_wrong) {
+TEST(Map, names_what_is_wrong) {
   EXPECT_THROW(parse_map("lode"), InputError);
   EXPECT_THROW(parse_map("load,load"), InputError);
   EXPECT_THROW(parse_map("load,nu,kappa"), InputError);

@@ -57,7 +57,7 @@ class StepperTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(StepperTest, SteppedMethodTypes, EntryName);
 
-TYPED_TEST(StepperTest, relaxation_ends_at_rest_with_the_imposed_displacements) {
+TYPED_TEST(StepperTest, relaxation_ends_in_equilibrium_with_the_imposed_displacements) {
   const Vector d{0.04, 0.0, 0.03};
   const Scene scene = driven_block(d);
   const Model model(scene, this->method());
@@ -283,7 +283,7 @@ TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
 }
 
 /// A NaN volume is neither positive nor negative; it must not count as healthy.
-TEST(Health, numbers_that_are_none_are_told_from_inverted_elements) {
+TEST(Health, not_a_number_is_distinguished_from_inverted_elements) {
   const auto breakdown_of = [](const std::vector<double>& jacobians) -> std::optional<Breakdown> {
     try {
       require_healthy(jacobians, 7);
@@ -321,7 +321,7 @@ TYPED_TEST(StepperTest, an_observer_may_end_the_run) {
   EXPECT_LT(motion.time, 10.0);
 }
 
-TYPED_TEST(StepperTest, too_few_steps_are_told_and_not_called_rest) {
+TYPED_TEST(StepperTest, too_few_steps_are_reported_and_not_called_equilibrium) {
   Scene scene = driven_block({0.04, 0.0, 0.03});
   scene.settings.relaxation.max_steps = 5;
   Observer silent;

@@ -97,7 +97,7 @@ TYPED_TEST(StressTest, of_the_elements_sum_up_to_the_virial_of_the_nodal_forces)
 }
 
 /// The material's stress does not depend on the strength of the hourglass control.
-TYPED_TEST(StressTest, is_none_of_the_hourglass_control) {
+TYPED_TEST(StressTest, excludes_the_hourglass_control) {
   if (!method_named(this->name).takes_kappa) return;
   const auto [scene, u] = this->strained(sample_law<NeoHookean>(0.45), 0.02);
   const auto stresses = [&](double kappa) {

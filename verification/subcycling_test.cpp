@@ -347,7 +347,7 @@ TEST(Subcycling, of_one_small_step_has_the_bits_of_none) {
 }
 
 /// A resumed run has the same bits for any number of small steps at the checkpoint.
-TEST(Subcycling, goes_on_from_a_checkpoint) {
+TEST(Subcycling, resumes_from_a_checkpoint) {
   struct Keeper final : Observer {
     void resumable(const std::function<Checkpoint()>& checkpoint) override {
       if (++points == 4) kept = checkpoint();

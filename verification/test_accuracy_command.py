@@ -15,8 +15,8 @@ def test_the_mesh_is_refined_until_the_answer_is_near_enough(tmp_path):
         r"error against the truth: max (\S+) %.*, on (\d+) elements instead of 270", outcome.stdout
     )
     assert 0.0 < float(found[1]) <= 0.6
-    told = re.search(r"^against the truth: max (\S+) %", outcome.stdout, re.MULTILINE)
-    assert 0.0 < float(told[1]) <= 0.6
+    figure = re.search(r"^against the truth: max (\S+) %", outcome.stdout, re.MULTILINE)
+    assert 0.0 < float(figure[1]) <= 0.6
     assert "against the golden" not in outcome.stdout  # the golden is for another mesh
     with h5py.File(result) as file:
         assert len(file["mesh/cells"]) == int(found[2]) > 270
@@ -27,7 +27,7 @@ def test_a_mesh_that_is_fine_enough_stays():
     assert "on 270 elements instead of 270" in outcome.stdout
 
 
-def test_a_method_that_errs_more_than_the_mesh_is_told():
+def test_a_method_that_errs_more_than_the_mesh_is_reported():
     arguments = ("run", "column", "-m", "linear", "--accuracy", "3%", "--against", "truth")
     outcome = sandglass(*arguments, code=1)
     note = "the mesh is fine enough for tl-mean-dilatation, but not for linear"

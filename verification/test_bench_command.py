@@ -87,7 +87,7 @@ def test_figures_follow_from_each_other(tiny):
         assert r["speedup_over_scalar_double"] == pytest.approx(yardstick / ns)
 
 
-def test_json_tells_where_it_comes_from(tiny):
+def test_json_names_its_source(tiny):
     document = tiny[1]
     for name in ("version", "revision", "compiler", "build_flags", "processor"):
         assert document[name]
@@ -95,7 +95,7 @@ def test_json_tells_where_it_comes_from(tiny):
     assert document["repetitions"] == 1
 
 
-def test_json_tells_the_width_of_packs(tiny):
+def test_json_has_the_width_of_packs(tiny):
     """From the compiler: machines with the same name and "-march=native" may differ."""
     flags = tiny[1]["build_flags"]
     arch = re.search(r"-march=[^;]+", flags).group()
@@ -188,7 +188,7 @@ def test_rest(block):
         assert record["precision"] == "float" or record["residual"] < 1e-8
 
 
-def test_rest_that_is_not_reached_ends_with_3(block):
+def test_a_missed_equilibrium_ends_with_3(block):
     block.write_text(block.read_text() + "\n[relaxation]\nmax_steps = 5\n")
     command = f"bench --rest {block} --methods tl-full --precision double"
     outcome, document = documented(command, code=3)

@@ -163,7 +163,7 @@ def test_other_options_are_refused(stopped, options, name):
 def test_an_edited_case_is_refused(stopped):
     case, file = stopped
     case.write_text(case.read_text().replace("frames = 9", "frames = 10"))
-    outcome = sandglass("run", case, "--checkpoint", file, code=2, told="input_hash")
+    outcome = sandglass("run", case, "--checkpoint", file, code=2, message="input_hash")
     assert "case_hash: " not in outcome.stderr  # the answer does not depend on what is stored of it
 
 
@@ -183,12 +183,12 @@ def test_a_damaged_checkpoint_is_refused(stopped):
     middle = len(good) // 2
     for bad in (good[:middle], good[:middle] + bytes([good[middle] ^ 1]) + good[middle + 1 :], b""):
         file.write_bytes(bad)
-        sandglass("run", case, "--checkpoint", file, code=2, told=f"{file}: is damaged")
+        sandglass("run", case, "--checkpoint", file, code=2, message=f"{file}: is damaged")
         assert file.read_bytes() == bad
 
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="needs Linux's /proc")
-def test_an_interrupted_run_goes_on(block):
+def test_an_interrupted_run_resumes(block):
     """Ctrl-C writes a checkpoint at the next check, regardless of the interval."""
     block.write_text(dynamic(BLOCK, duration=40.0, frames=9))
     folder = block.parent

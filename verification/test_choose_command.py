@@ -62,12 +62,12 @@ def test_light_touch_takes_the_condensed_linear_answer(tmp_path):
     case = copied("ellipsoid-touch", tmp_path, ("-0.01]", "-0.001]"))
     chosen = tmp_path / "chosen.toml"
     outcome, document = choose(case, "--tolerance", "5%", "-o", chosen)
-    rung = chosen_of(document)
-    assert rung["method"] == "linear-condensed" and rung["mesh"] == "own mesh"
-    assert rung["error"] <= 0.05 and rung["smallest_jacobian"] > 0.9
+    candidate = chosen_of(document)
+    assert candidate["method"] == "linear-condensed" and candidate["mesh"] == "own mesh"
+    assert candidate["error"] <= 0.05 and candidate["smallest_jacobian"] > 0.9
     _, golden = answer(case, "--method", "tl-mean-dilatation")
     _, u = answer(chosen)
-    assert largest(u - golden, 0.001) == pytest.approx(rung["error"], rel=1e-9)
+    assert largest(u - golden, 0.001) == pytest.approx(candidate["error"], rel=1e-9)
 
 
 def test_column_takes_one_nonlinear_point(tmp_path):
@@ -80,9 +80,9 @@ def test_column_takes_one_nonlinear_point(tmp_path):
     case = copied("column", tmp_path)
     chosen = tmp_path / "chosen.toml"
     outcome, document = choose(case, "--tolerance", "2%", "--all", "-o", chosen)
-    rung = chosen_of(document)
+    candidate = chosen_of(document)
     sufficient = [r for r in document["rungs"] if r["outcome"] in ("chosen", "sufficient")]
-    assert sufficient[0] is rung and all(r["error"] <= 0.02 for r in sufficient)
+    assert sufficient[0] is candidate and all(r["error"] <= 0.02 for r in sufficient)
     # The cost of levels is only known afterwards.
     fixed = [r for r in sufficient if r["accuracy"] is None]
     costs = [r["seconds_per_simulated_second"] for r in fixed]
@@ -99,7 +99,7 @@ def test_column_takes_one_nonlinear_point(tmp_path):
     points, u = answer(chosen)
     unit = np.hypot(0.5, 0.3)
     predicted = largest(on_lattice(points, u, nodes) - golden, unit)
-    assert predicted == pytest.approx(rung["error"], rel=1e-6)
+    assert predicted == pytest.approx(candidate["error"], rel=1e-6)
     assert predicted <= 0.02
 
 
@@ -107,14 +107,14 @@ def test_ellipsoid_takes_the_adaptive_method_at_half_a_percent(tmp_path):
     case = copied("ellipsoid-indentation", tmp_path)
     chosen = tmp_path / "chosen.toml"
     outcome, document = choose(case, "--tolerance", "0.5%", "--against", "golden", "-o", chosen)
-    rung = chosen_of(document)
+    candidate = chosen_of(document)
     tried = document["rungs"][: document["chosen"]]
     assert all(r["error"] > 0.005 and r["outcome"] == "refused" and r["reason"] for r in tried)
     assert {"linear", "linear-condensed", "tl-perturbation"} <= {r["method"] for r in tried}
-    assert rung["error"] <= 0.005 and rung["method"] == "tl-adaptive"
+    assert candidate["error"] <= 0.005 and candidate["method"] == "tl-adaptive"
     with h5py.File(ROOT / "reference" / "golden" / "ellipsoid-indentation.h5") as file:
         golden = file["displacement"][:]
-    assert largest(answer(chosen)[1] - golden, 0.04) == pytest.approx(rung["error"], rel=1e-9)
+    assert largest(answer(chosen)[1] - golden, 0.04) == pytest.approx(candidate["error"], rel=1e-9)
 
 
 def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
@@ -128,7 +128,7 @@ def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
     words = " ".join(document["remarks"])
     assert "smaller errors cannot be shown" in words
     assert "no method can be more accurate" in words
-    assert "the most accurate rung" in words
+    assert "the most accurate candidate" in words
     assert all(r["reason"] and r["outcome"] == "refused" for r in document["rungs"])
     assert all(remark in " ".join(outcome.stdout.split()) for remark in document["remarks"])
 
@@ -171,7 +171,7 @@ def test_the_written_case_is_the_users_own(block, tmp_path):
     assert 'requirement = "A block is pulled and sheared."' in text
 
 
-def test_run_takes_the_method_of_the_case_unless_told(block):
+def test_run_takes_the_method_of_the_case_unless_specified(block):
     block.write_text(BLOCK + '\n[method]\nname = "tl-perturbation"\nkappa = 0.02\n')
     assert "tl-perturbation, kappa 0.02, double" in sandglass("run", block).stdout
     assert "tl-perturbation, kappa 0.03, " in sandglass("run", block, "-k", "0.03").stdout
@@ -186,15 +186,17 @@ def test_run_takes_the_method_of_the_case_unless_told(block):
 
 
 def test_a_motion_is_chosen_for_and_the_chosen_case_runs(tmp_path):
-    """Every rung that was tried has the time of its run next to the predicted one."""
+    """Every candidate that was tried has the time of its run next to the predicted one."""
     case, chosen = copied("loaded-block", tmp_path), tmp_path / "chosen.toml"
     names = ("tl-perturbation", "tl-stabilization-matrix", "linear-condensed")
     outcome, document = choose(case, "--methods", *names, "-o", chosen)
     best = document["rungs"][document["chosen"]]
     assert best["method"] == "tl-stabilization-matrix" and best["error"] < 0.01
-    for rung in document["rungs"]:
-        moved = rung["run_seconds_per_simulated_second"]
-        assert (moved is None) == (rung["outcome"] == "not tried" or "motion" in rung["reason"])
+    for candidate in document["rungs"]:
+        moved = candidate["run_seconds_per_simulated_second"]
+        assert (moved is None) == (
+            candidate["outcome"] == "not tried" or "motion" in candidate["reason"]
+        )
     assert sandglass("run", chosen).returncode == 0
 
 
@@ -204,8 +206,8 @@ def test_a_motion_is_chosen_for_and_the_chosen_case_runs(tmp_path):
 def test_budgets_are_kept(block, budget, suffices):
     words = ("--methods", "linear", "--tolerance", "50%", "--budget", budget)
     _, document = choose(block, *words, code=0 if suffices else 1)
-    for rung in document["rungs"]:
-        assert suffices or ("may take" in rung["reason"] and rung["error"] is None)
+    for candidate in document["rungs"]:
+        assert suffices or ("may take" in candidate["reason"] and candidate["error"] is None)
 
 
 def rows_of(text):
@@ -215,7 +217,7 @@ def rows_of(text):
 
 
 @pytest.mark.parametrize("arguments", [(), ("--all",)])
-def test_what_is_printed_fits_a_terminal_and_says_what_the_file_says(tmp_path, arguments):
+def test_the_output_fits_a_terminal_and_agrees_with_the_file(tmp_path, arguments):
     """The chosen row is marked; rejected ones are counted by reason, and listed on request."""
     outcome, document = choose(copied("column", tmp_path), "--tolerance", "2%", *arguments)
     assert max(map(len, outcome.stdout.splitlines())) <= 100
@@ -258,6 +260,6 @@ def test_the_note_on_the_reference_is_its_distance_from_the_stored_truth(tmp_pat
 def test_ctrl_c_leaves_nothing(tmp_path):
     case = copied("ellipsoid-indentation", tmp_path)
     chosen, table = tmp_path / "chosen.toml", tmp_path / "choice.json"
-    code, told = interrupted("choose", case, "--all", "-o", chosen, "--json", table)
-    assert code == 3 and "interrupted" in told, told
+    code, message = interrupted("choose", case, "--all", "-o", chosen, "--json", table)
+    assert code == 3 and "interrupted" in message, message
     assert sorted(path.name for path in tmp_path.iterdir()) == ["ellipsoid-indentation.toml"]

@@ -21,7 +21,7 @@ CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, texts",
     [
         (
             ["--help"],
@@ -35,9 +35,9 @@ CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
         ),
     ],
 )
-def test_what_the_program_says_of_itself(words, told):
+def test_the_program_describes_itself(words, texts):
     outcome = sandglass(*words, code=0)
-    assert all(text in outcome.stdout for text in told)
+    assert all(text in outcome.stdout for text in texts)
 
 
 def test_cases_lists_every_case_with_its_requirement():
@@ -50,7 +50,7 @@ def test_cases_lists_every_case_with_its_requirement():
 
 def test_cases_in_an_empty_or_missing_folder(tmp_path):
     environment = dict(os.environ, SANDGLASS_CASES=str(tmp_path / "none"))
-    sandglass("cases", env=environment, code=2, told="none: cannot list the cases")
+    sandglass("cases", env=environment, code=2, message="none: cannot list the cases")
 
 
 def test_methods_lists_one_line_each():
@@ -186,14 +186,14 @@ def test_dynamic_case(block):
         times = [frame.attrs["time"] for frame in file["frames"].values()]
         assert len(times) == 6 and times[0] == 0.0 and times[-1] == pytest.approx(0.05, rel=1e-9)
         assert file["history/kinetic_energy"][:].max() > 0.0
-    sandglass("verify", block, code=2, told="dynamic")
+    sandglass("verify", block, code=2, message="dynamic")
 
 
-def test_run_tells_how_many_subcycles_it_took(block):
+def test_run_reports_its_subcycles(block):
     bar = BLOCK.replace("[0.1, 0.1, 0.2]", "[0.05, 0.05, 20.0]").replace("[2, 2, 4]", "[1, 1, 400]")
     bar = bar.replace("[0.2, 0.2]", "[20.0, 20.0]")
     end = '[element_sets]\nend = { z = [0.0, 0.05] }\n[[refine]]\nelements = "end"\ndepth = 2\n'
-    for text, most, told in [
+    for text, most, message in [
         (bar + end, 16, ", 4 subcycles, complete"),
         (bar + end, 2, ", 2 subcycles, complete"),
         (bar, 16, ", 1 subcycle, complete"),
@@ -201,10 +201,10 @@ def test_run_tells_how_many_subcycles_it_took(block):
     ]:
         block.write_text(dynamic(text, duration=0.1, subcycles=most))
         outcome = sandglass("run", block, code=0)
-        assert told in outcome.stdout
+        assert message in outcome.stdout
         assert ("subcycle" in outcome.stdout) == (most > 1)
     block.write_text(dynamic(bar, duration=0.1, subcycles=65))
-    sandglass("run", block, code=2, told="dynamics.subcycles = 65")
+    sandglass("run", block, code=2, message="dynamics.subcycles = 65")
 
 
 # Failures of the computation.
@@ -222,10 +222,10 @@ def test_inversion_ends_with_3_and_keeps_the_way_there(block):
         assert len(file["frames"]) > 1
 
 
-def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
+def test_no_equilibrium_ends_with_3_and_says_so_in_the_file(block):
     block.write_text(BLOCK + "[relaxation]\nmax_steps = 5\n")
     result = block.parent / "result.h5"
-    sandglass("run", block, "-o", result, code=3, told="no equilibrium after 5 evaluations")
+    sandglass("run", block, "-o", result, code=3, message="no equilibrium after 5 evaluations")
     with h5py.File(result) as file:
         assert text_of(file.attrs["status"]) == "no equilibrium after 5 evaluations"
 

@@ -94,7 +94,7 @@ def test_places_that_cannot_be_written(case, writer, place):
     if (writer, place) == ("verify-results", "a-folder"):
         return  # it requires a folder
     before = listing(folder)
-    sandglass(*arguments, place, cwd=folder, code=2, told=f"{place}")
+    sandglass(*arguments, place, cwd=folder, code=2, message=f"{place}")
     assert listing(folder) == before
     assert os.path.exists("/dev/null") and not os.path.isfile("/dev/null")
 

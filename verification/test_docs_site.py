@@ -152,7 +152,7 @@ def test_pages_show_what_the_program_prints_and_the_module_says(pages):
         assert "step_fraction" in text and "an independent copy" in text.lower()
 
 
-def test_what_public_headers_declare_is_described(pages):
+def test_declarations_of_public_headers_are_described(pages):
     text = pages["api/cpp.html"].text
     for header in PUBLIC:
         code = (ROOT / header).read_text()
@@ -173,7 +173,7 @@ def test_what_public_headers_declare_is_described(pages):
         ("solver/sandglass/batch.hpp", "  ///< s, the longest", "  // s, the longest", "step_size"),
     ],
 )
-def test_a_fault_is_told_and_leaves_the_last_documentation(tree, path, old, new, rule):
+def test_a_fault_is_reported_and_leaves_the_last_documentation(tree, path, old, new, rule):
     text = (tree / path).read_text()
     assert old in text
     (tree / path).write_text(text.replace(old, new))
@@ -184,6 +184,6 @@ def test_a_fault_is_told_and_leaves_the_last_documentation(tree, path, old, new,
     assert not (tree / "build/docs.new").exists()
 
 
-def test_what_ci_docs_site_does_not_know_is_refused(tree):
+def test_unknown_arguments_of_ci_docs_site_are_refused(tree):
     done = docs_site(tree, "--link")
     assert done.returncode == 2 and "allowed: nothing, or --links" in done.stderr

@@ -102,7 +102,7 @@ def test_same_bits_for_ranks_and_threads(case, block, tmp_path):
         assert xdmf.count("<Time") == len(frames) > 1
 
 
-def test_an_error_of_all_ranks_is_told_once():
+def test_an_error_of_all_ranks_is_reported_once():
     code, out, err = outcome_of(2, "run", "colum")
     assert code == 2
     assert err.count("error: case: 'colum' is neither a file nor a known case") == 1
@@ -123,17 +123,17 @@ def test_an_error_of_one_rank_ends_all(tmp_path):
         (["run", "column", "--sleep", "1%"], "not divided among ranks"),
     ],
 )
-def test_what_ranks_cannot_share_is_refused(arguments, message):
+def test_features_without_ranks_are_refused(arguments, message):
     code, out, err = outcome_of(2, *arguments)
     assert code == 2
     assert err.count("error: ") == 1 and message in err
 
 
-def test_threads_that_mpirun_binds_to_one_processor_are_told():
+def test_threads_that_mpirun_binds_to_one_processor_are_reported():
     arguments = ("run", "column", "--threads", 2)
-    told = "warning: the 2 threads of a rank share 1 processor; give mpirun --bind-to none"
+    message = "warning: the 2 threads of a rank share 1 processor; give mpirun --bind-to none"
     code, out, err = outcome_of(1, *arguments, bound=True)
-    assert code == 0 and err.count(told) == 1
+    assert code == 0 and err.count(message) == 1
     code, out, err = outcome_of(1, *arguments)
     assert code == 0 and "warning" not in err
 
@@ -156,7 +156,7 @@ def processes_below(pid):
     return [int(child) for child in children]
 
 
-def test_a_killed_rank_ends_the_run_and_the_checkpoint_goes_on(tmp_path):
+def test_a_killed_rank_ends_the_run_and_the_checkpoint_resumes_it(tmp_path):
     """On the same number of ranks or another, with the bits of an uninterrupted run."""
     case = tmp_path / "block.toml"
     case.write_text(block_in_motion(1.0))

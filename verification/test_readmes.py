@@ -252,7 +252,7 @@ WAYS = {
 }
 
 
-def test_what_a_new_thing_costs_is_what_contributing_says(tmp_path):
+def test_costs_of_additions_match_contributing(tmp_path):
     """The row has, after promise and file of the steps: new files; changed files, added lines."""
     text = DOCUMENTS["CONTRIBUTING.md"]
     rows = re.findall(r"^\| ([^|]+) \| [^|]+ \| `([^`]+)` \| (\d) \| (\d), (\d+) \|$", text, re.M)

@@ -121,9 +121,9 @@ ROWS = [" ".join(row.split()) for row in re.split(r"\n+(?! )", REFUSED.strip())]
 
 @pytest.mark.parametrize("row", ROWS)
 def test_wrong_use_is_refused(block, row):
-    command, _, told = row.partition("|")
+    command, _, message = row.partition("|")
     words = [word for word in shlex.split(command) if word]
-    texts = [text for text in map(str.strip, told.split("&")) if text]
-    outcome = sandglass(*words, cwd=block.parent, code=2, told=texts)
+    texts = [text for text in map(str.strip, message.split("&")) if text]
+    outcome = sandglass(*words, cwd=block.parent, code=2, message=texts)
     assert outcome.stderr and not outcome.stdout
     assert [file.name for file in block.parent.iterdir()] == ["block.toml"]

@@ -69,13 +69,13 @@ def test_a_mesh_in_mm_is_warned_of_with_a_way_out(block, tmp_path):
     )
 
 
-def test_a_condensed_method_in_motion_is_refused_before_anything_is_said(block):
+def test_a_condensed_method_in_motion_is_refused_before_any_output(block):
     block.write_text(dynamic(BLOCK))
     outcome = sandglass("run", block, "--method", "linear-condensed", code=2)
     assert outcome.stdout == ""
 
 
-def test_memory_that_a_run_lacks_is_told_before_it_starts(block):
+def test_memory_that_a_run_lacks_is_reported_before_it_starts(block):
     # A mesh of 250,000 elements takes 90 MB, the search for equilibrium on it 875 MB.
     block.write_text(BLOCK.replace("[2, 2, 4]", "[50, 50, 100]"))
     limit = (800 << 20, 800 << 20)
@@ -108,9 +108,9 @@ def test_the_last_lines_are_those_of_the_result(block):
             f"{smallest:.3g}; hourglass energy {100 * ratio:.3g} % of strain energy"
         ) in lines
         for name in ("foot", "head"):
-            told = re.search(f"^reaction at {name} {FORCE}$", text, re.MULTILINE)
+            printed = re.search(f"^reaction at {name} {FORCE}$", text, re.MULTILINE)
             stored = history[f"reaction/{name}"][-1]
-            assert [float(f) for f in told.groups()] == pytest.approx(
+            assert [float(f) for f in printed.groups()] == pytest.approx(
                 stored, rel=6e-3, abs=2e-4 * abs(stored).max()
             )
             assert (stored == last[f"reaction/{name}"][:]).all()
@@ -120,7 +120,7 @@ def test_the_last_lines_are_those_of_the_result(block):
     assert "nothing stored" not in text
 
 
-def test_without_output_nothing_is_stored_and_it_says_so(block):
+def test_without_output_nothing_is_stored_and_a_note_is_printed(block):
     assert "nothing stored; -o FILE.h5" in lines_of(sandglass("run", block))[-1]
     assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
 
@@ -221,7 +221,7 @@ def test_the_case_is_no_place_for_results(block, option):
     before = block.read_bytes()
     case = block.parent / "case.h5"  # a case may have any name
     shutil.copy(block, case)
-    sandglass("run", case, option, case, code=2, told=f"{case}: is an input of this command")
+    sandglass("run", case, option, case, code=2, message=f"{case}: is an input of this command")
     assert case.read_bytes() == before
 
 
@@ -248,7 +248,7 @@ def test_no_command_overwrites_what_it_reads(block):
         ("stability", own, "--json", "own.toml"),
         ("bench", own, "--json", "own.toml"),
     ):
-        sandglass(*words, cwd=folder, code=2, told="is an input of this command")
+        sandglass(*words, cwd=folder, code=2, message="is an input of this command")
         assert {file.name: file.read_bytes() for file in folder.iterdir()} == before, words
 
 

@@ -37,9 +37,9 @@ def test_limits_just_above_and_below_the_errors(answer):
         words = [word for limit in limits for word in ("--limit", limit)]
         outcome, record = scored(answer, *words)
         assert outcome.returncode == (1 if broken else 0), outcome.stderr
-        told = [line.split()[1:3] for line in outcome.stdout.splitlines() if line[:5] == "limit"]
-        assert [figure for verdict, figure in told if verdict == "BROKEN:"] == broken
-        assert len(told) == len(limits) and record["golden"]["max_relative_error"] == largest
+        printed = [line.split()[1:3] for line in outcome.stdout.splitlines() if line[:5] == "limit"]
+        assert [figure for verdict, figure in printed if verdict == "BROKEN:"] == broken
+        assert len(printed) == len(limits) and record["golden"]["max_relative_error"] == largest
 
 
 def test_a_limit_holds_against_the_truth_where_asked():
@@ -54,10 +54,10 @@ def test_a_limit_holds_against_the_truth_where_asked():
 
 def test_without_a_golden_the_mean_dilatation_element_judges(block):
     block.write_text(BARE)
-    twin, other = block.parent / "twin.h5", block.parent / "other.h5"
-    for result, method in [(twin, "tl-mean-dilatation"), (other, "tl-none")]:
+    accurate, other = block.parent / "accurate.h5", block.parent / "other.h5"
+    for result, method in [(accurate, "tl-mean-dilatation"), (other, "tl-none")]:
         assert sandglass("run", block, "-m", method, "-o", result).returncode == 0
-    for result, code in [(twin, 0), (other, 1)]:
+    for result, code in [(accurate, 0), (other, 1)]:
         outcome = sandglass("score", result, "--case", block, "--limit", "max=0.001%", code=code)
         assert "max error against the mean-dilatation element" in outcome.stdout
         first, heads, figures = outcome.stdout.splitlines()[:3]
@@ -65,7 +65,7 @@ def test_without_a_golden_the_mean_dilatation_element_judges(block):
         assert figures.startswith("against the mean-dilatation element ")
         assert len(heads) == len(figures)  # columns are right-aligned with their heads
     own = block.parent / "block.h5"
-    own.write_bytes(twin.read_bytes())
+    own.write_bytes(accurate.read_bytes())
     assert sandglass("score", own, "--case", block).stdout.startswith("block: errors in %")
 
 
@@ -82,8 +82,8 @@ def test_without_a_golden_the_mean_dilatation_element_judges(block):
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
-def test_wrong_limits_are_told(answer, tmp_path_factory, arguments, words):
+def test_wrong_limits_are_reported(answer, tmp_path_factory, arguments, words):
     command = ("score", answer, "--case", answer.parent / "block.toml", *arguments)
     empty = tmp_path_factory.mktemp("empty")
-    sandglass(*command, "--json", "s.json", cwd=empty, code=2, told=words)
+    sandglass(*command, "--json", "s.json", cwd=empty, code=2, message=words)
     assert not list(empty.iterdir())

@@ -22,7 +22,7 @@ def beam(tmp_path):
     return path
 
 
-def test_what_sleeps_is_in_the_result_at_rest(beam):
+def test_sleeping_parts_are_in_the_static_result(beam):
     result = beam.parent / "result.h5"
     outcome = sandglass("run", beam, "--sleep", "1%", "-o", result, code=0)
     awake = next(line for line in outcome.stdout.splitlines() if line.startswith("awake: "))
@@ -38,4 +38,4 @@ def test_what_sleeps_is_in_the_result_at_rest(beam):
 
 def test_a_method_that_computes_no_elements_is_refused():
     words = ("run", "column", "--sleep", "1%", "--method", "linear-condensed")
-    sandglass(*words, code=2, told="'linear-condensed'")
+    sandglass(*words, code=2, message="'linear-condensed'")

@@ -49,7 +49,7 @@ def test_finished_cells_are_not_computed_again(block, tmp_path):
     assert [c for c in maps_of(file)[0]["cells"] if c["steps"] == 123456]
 
 
-def test_goes_on_after_a_kill_and_gives_the_same_maps(block, tmp_path):
+def test_resumes_after_a_kill_and_gives_the_same_maps(block, tmp_path):
     whole, rest = tmp_path / "whole.json", tmp_path / "rest.json"
     kept = tmp_path / "kept"
     assert sandglass("stability", block, *MAP, "--folder", tmp_path / "a", "--json", whole, "-j", 2)

@@ -53,28 +53,28 @@ def test_lists_of_names_are_not_empty():
 
 @pytest.mark.parametrize("name, wrong", misspelt(COMMANDS))
 def test_a_misspelt_command_is_answered_with_the_nearest(name, wrong):
-    told = refused(wrong, "column", "--all")
-    assert f"'{wrong}' is not a command; did you mean '{name}'?" in told
+    message = refused(wrong, "column", "--all")
+    assert f"'{wrong}' is not a command; did you mean '{name}'?" in message
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_misspelt_option_is_answered_with_the_nearest(command):
     for name, wrong in misspelt(OPTIONS[command]):
-        told = refused(command, f"{wrong}=1")
+        message = refused(command, f"{wrong}=1")
         expected = f"error: {command}: '{wrong}' is not an option; did you mean '{name}'?"
-        assert expected in told and f"sandglass {command} --help" in told
+        assert expected in message and f"sandglass {command} --help" in message
 
 
 def test_a_misspelt_method_is_answered_with_the_nearest(block):
     for name, wrong in misspelt(methods()):
-        told = refused("run", block, "--method", wrong)
-        assert f"'{wrong}' is not known; did you mean '{name}'?" in told
+        message = refused("run", block, "--method", wrong)
+        assert f"'{wrong}' is not known; did you mean '{name}'?" in message
 
 
 def test_a_misspelt_case_is_answered_with_the_nearest(tmp_path):
     for name, wrong in misspelt(CASES):
-        told = refused("mesh", wrong, "-o", tmp_path / "mesh.h5")
-        assert f"did you mean '{name}'?" in told and len(told.splitlines()) == 1
+        message = refused("mesh", wrong, "-o", tmp_path / "mesh.h5")
+        assert f"did you mean '{name}'?" in message and len(message.splitlines()) == 1
 
 
 def test_a_misspelt_file_is_answered_with_the_nearest_beside_it(tmp_path):
@@ -83,9 +83,9 @@ def test_a_misspelt_file_is_answered_with_the_nearest_beside_it(tmp_path):
         ("my-baem.toml", "my-beam.toml"),
         (tmp_path / "my-baem.toml", tmp_path / "my-beam.toml"),
     ]:
-        told = refused("run", given, cwd=tmp_path)
-        assert f"did you mean '{meant}'? `sandglass cases` lists the known ones\n" in told
-        assert "ellipsoid-touch" not in told
+        message = refused("run", given, cwd=tmp_path)
+        assert f"did you mean '{meant}'? `sandglass cases` lists the known ones\n" in message
+        assert "ellipsoid-touch" not in message
 
 
 @pytest.mark.parametrize(
@@ -101,14 +101,14 @@ def test_a_misspelt_file_is_answered_with_the_nearest_beside_it(tmp_path):
         ("= 0.49", "= 0.49 m", 15, "expected a comment or whitespace, saw 'm'\n"),
     ],
 )
-def test_slips_in_a_case_file_are_told_with_their_line(block, old, new, line, words):
+def test_slips_in_a_case_file_are_reported_with_their_line(block, old, new, line, words):
     assert old in BLOCK
     block.write_text(BLOCK.replace(old, new))
-    told = refused("run", block)
-    assert told.startswith(f"error: {block}:{line}: ") and words in told
+    message = refused("run", block)
+    assert message.startswith(f"error: {block}:{line}: ") and words in message
 
 
-def test_memory_that_does_not_suffice_is_told_in_gigabytes(block, tmp_path):
+def test_memory_that_does_not_suffice_is_reported_in_gigabytes(block, tmp_path):
     block.write_text(BLOCK.replace("[2, 2, 4]", "[3000, 3000, 3000]"))
     limit = (4 << 30, 4 << 30)
     outcome = sandglass(

@@ -133,4 +133,4 @@ def test_truncated_golden_ends_with_2(block):
     write_golden(block)
     golden = block.parent / "golden.h5"
     golden.write_bytes(golden.read_bytes()[:1000])
-    sandglass("verify", block, code=2, told="golden.h5: is not a complete HDF5 file")
+    sandglass("verify", block, code=2, message="golden.h5: is not a complete HDF5 file")

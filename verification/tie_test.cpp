@@ -7,9 +7,9 @@
 #include "io/case_file.hpp"
 #include "problem/scene_rules.hpp"
 #include "solve/relaxation.hpp"
-#include "support/at_rest.hpp"
 #include "support/case_text.hpp"
 #include "support/scenes.hpp"
+#include "support/static_answer.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -90,7 +90,7 @@ TEST(Tie, has_the_answer_of_hanging_nodes) {
   const Scene scene = tied_boxes({2, 2, 2}, {4, 4, 4});
   const Scene refined = scene_of(box({1, 1, 2}, {2, 2, 4}), "[[refine]]\nelements = \"upper\"\n");
   for (const auto* method : {"tl-mean-dilatation", "tl-perturbation"}) {
-    const NodalField u = at_rest(scene, {method}).u, expected = at_rest(refined, {method}).u;
+    const NodalField u = static_answer(scene, {method}).u, expected = static_answer(refined, {method}).u;
     double largest = 0.0;
     int compared = 0;
     for (std::size_t n = 0; n < u.size(); ++n) {
@@ -110,8 +110,8 @@ TEST(Tie, has_the_answer_of_hanging_nodes) {
 TEST(Tie, joins_parts_that_do_not_match) {
   const Scene scene = tied_boxes({4, 4, 4}, {5, 5, 5});
   const Scene whole = scene_of(box({1, 1, 2}, {4, 4, 8}), "");
-  const Relaxation joined = at_rest(scene, {"tl-mean-dilatation"}),
-                   one = at_rest(whole, {"tl-mean-dilatation"});
+  const Relaxation joined = static_answer(scene, {"tl-mean-dilatation"}),
+                   one = static_answer(whole, {"tl-mean-dilatation"});
   EXPECT_NEAR(joined.energies.strain / one.energies.strain, 1.0, 0.01);
 }
 

@@ -11,9 +11,9 @@
 #include "problem/scene_refinement.hpp"
 #include "solve/mixed_body.hpp"
 #include "solve/relaxation.hpp"
-#include "support/at_rest.hpp"
 #include "support/case_text.hpp"
 #include "support/scenes.hpp"
+#include "support/static_answer.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -168,7 +168,7 @@ TEST(Relax, starts_near_a_guess) {
 TEST(MixedBody, averages_to_the_pressures_of_the_mesh_before) {
   const CaseOnMesh column = case_named("column");
   const Scene coarse = make_scene(column), fine = make_scene(split(column, {0, 5, 60}));
-  const NodalField u = at_rest(coarse, {"tl-mean-dilatation"}).u;
+  const NodalField u = static_answer(coarse, {"tl-mean-dilatation"}).u;
   const auto own_pressures = [](const Scene& scene, const NodalField& at, const std::vector<int>& means_of) {
     const Model model(scene, {"tl-mean-dilatation"});
     const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
@@ -192,7 +192,7 @@ TEST(MixedBody, averages_to_the_pressures_of_the_mesh_before) {
 TEST(Relax, starts_from_the_answer_on_the_mesh_before) {
   const CaseOnMesh column = case_named("column");
   const Scene coarse = make_scene(column);
-  const NodalField u = at_rest(coarse, {"tl-mean-dilatation"}).u;
+  const NodalField u = static_answer(coarse, {"tl-mean-dilatation"}).u;
   const Scene fine = make_scene(split(column, largest_share(error_indicators(coarse, u), 0.6)));
   const NodalField guess = prolonged(fine.coarser.front(), u);
   const Model model(fine, {"tl-mean-dilatation"});
@@ -212,13 +212,13 @@ TEST(TruthEstimate, is_about_the_error) {
     const Scene scene = make_scene(problem);
     const NodalField truth = read_reference(read_comparison(scene).truth, scene).front();
     for (const auto* method : {"tl-mean-dilatation", "tl-perturbation"}) {
-      const NodalField u = at_rest(scene, {method}).u;
-      const Accuracy told = accuracy(u, truth, nullptr, 1.0);
+      const NodalField u = static_answer(scene, {method}).u;
+      const Accuracy measured = accuracy(u, truth, nullptr, 1.0);
       const TruthEstimate estimate = estimate_truth_error(problem, 1, u);
       EXPECT_EQ(estimate.remark, "") << name;
       EXPECT_GT(estimate.elements, scene.mesh.cells.size()) << name;
       for (const double ratio :
-           {estimate.largest / told.max_relative_error, estimate.rms / told.rms_relative_error}) {
+           {estimate.largest / measured.max_relative_error, estimate.rms / measured.rms_relative_error}) {
         EXPECT_GT(ratio, 0.5) << name << " " << method;
         EXPECT_LT(ratio, 2.0) << name << " " << method;
       }
@@ -250,7 +250,7 @@ TEST(RefineUntilWithin, refines_no_more_than_is_asked) {
 /// its mesh: the residual, a tenth, leaves about that much displacement.
 TEST(RefineUntilWithin, searches_as_long_as_the_accuracy_needs) {
   const AccurateMesh found = refine_until_within(0.1, case_named("ellipsoid-touch"), 1);
-  const NodalField exact = at_rest(found.scene, {"tl-mean-dilatation"}).u;
+  const NodalField exact = static_answer(found.scene, {"tl-mean-dilatation"}).u;
   const double left = largest_distance(exact, found.u) / displacement_unit(found.scene, exact);
   EXPECT_LT(left, 0.2 * 0.1);
   EXPECT_GT(left, 1e-4);

@@ -302,7 +302,7 @@ class LongTermBodyTest : public ::testing::Test {};
 TYPED_TEST_SUITE(LongTermBodyTest, PathIndependentMethodTypes, EntryName);
 
 /// So do quasi-static answers, if unique: modes without energy may end anywhere.
-TYPED_TEST(LongTermBodyTest, comes_to_rest_where_the_elastic_body_does) {
+TYPED_TEST(LongTermBodyTest, has_the_equilibrium_of_the_elastic_body) {
   if constexpr (knows_law<TypeParam, Law> && comparable<TypeParam> && zero_energy_modes<TypeParam>() == 6) {
     const Law law = sample_law<Law>(0.45);
     const auto kappa = same_stiffness<TypeParam>(law);

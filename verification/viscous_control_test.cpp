@@ -91,7 +91,7 @@ TEST(ViscousControl, takes_energy_and_never_gives_any) {
 }
 
 /// In static solutions there is nothing to damp: bit by bit the element without control.
-TEST(ViscousControl, does_nothing_at_rest) {
+TEST(ViscousControl, does_nothing_without_velocities) {
   RandomGeometry random(32);
   for (int n = 0; n < 20; ++n) {
     const auto X = random.hexahedron();

@@ -48,7 +48,7 @@ class Program(ABC):
     precision = "double"
 
     def __init__(self, paths, build="", about=""):
-        """paths: of its executables. build: tells builds of a program apart. about: its revision,
+        """paths: of its executables. build: distinguishes builds of a program. about: its revision,
         compiler and flags as text. Before it runs, `environment` and `processor` are set."""
         self.paths, self.build, self.about = paths, build, about
         self.environment, self.processor, self.version = {}, None, ""

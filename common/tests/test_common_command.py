@@ -33,19 +33,19 @@ Exit codes: 0 done, 2 wrong.
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, message",
     [
         (["--count", "0"], "argument --count: 0: must be 1 or more; --help lists"),
         (["--output", "none/x.h5"], "none/x.h5: cannot be written: the folder"),
         (["--cuont", "1"], "unrecognized arguments: --cuont 1"),
     ],
 )
-def test_wrong_use_of_a_script_is_refused_before_its_work(words, told, capsys):
+def test_wrong_use_of_a_script_is_refused_before_its_work(words, message, capsys):
     options = (option("--count", type=whole_number(1)), option("--output", type=writable))
     main = command_line(lambda options: options.count, TEXT, *options)
     assert main(["--count", "3"]) == 3
     assert main(words) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_help_shows_what_a_script_does_and_its_exit_codes(capsys):

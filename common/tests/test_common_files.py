@@ -27,20 +27,20 @@ def test_a_text_takes_the_place_of_the_old_one(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "error, told",
+    "error, kind",
     [(OSError(28, "No space left on device"), InputError), (KeyError("a key"), KeyError)],
 )
-def test_what_fails_on_the_way_leaves_the_old_file_and_nothing_else(tmp_path, error, told):
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, error, kind):
     file = tmp_path / "x.h5"
     file.write_text("old")
-    with pytest.raises(told, match="x.h5: cannot be written: No space left|a key"):
+    with pytest.raises(kind, match="x.h5: cannot be written: No space left|a key"):
         with new_file(file) as temporary:
             temporary.write_text("half")
             raise error
     assert file.read_text() == "old" and list(tmp_path.iterdir()) == [file]
 
 
-def test_what_cannot_be_put_in_place_leaves_the_old_file(tmp_path, monkeypatch):
+def test_a_failed_replacement_leaves_the_old_file(tmp_path, monkeypatch):
     file = tmp_path / "x.txt"
     file.write_text("old")
 
@@ -92,7 +92,7 @@ def test_documents_come_back(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "content, told",
+    "content, message",
     [
         (b"[]", "x.json: must be an object, not list"),
         (b"{", "x.json: not a JSON file: "),
@@ -100,10 +100,10 @@ def test_documents_come_back(tmp_path):
         (None, "x.json: cannot be read: No such file or directory; make it with a command"),
     ],
 )
-def test_what_is_no_document_is_refused(tmp_path, content, told):
+def test_invalid_documents_are_refused(tmp_path, content, message):
     if content is not None:
         (tmp_path / "x.json").write_bytes(content)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         read_json(tmp_path / "x.json", "a command")
 
 

@@ -8,7 +8,7 @@ from common.errors import ComputationError, InputError
 from common.program import ROOT, binary, output_of
 
 
-def test_the_solver_is_the_one_of_this_tree_unless_told(monkeypatch, tmp_path):
+def test_the_solver_is_the_one_of_this_tree_unless_specified(monkeypatch, tmp_path):
     monkeypatch.setenv("SANDGLASS_BINARY", sys.executable)
     assert binary().is_absolute() and binary().samefile(sys.executable)
     monkeypatch.setenv("SANDGLASS_BINARY", str(tmp_path))

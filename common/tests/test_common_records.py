@@ -9,7 +9,7 @@ from common.records import NUMBER, as_dataclass, entries, entry, facts, key
 
 
 @pytest.mark.parametrize(
-    "value, kind, told",
+    "value, kind, message",
     [
         ("3", int, "'3' must be a whole number"),
         (3.0, int, "3.0 must be a whole number"),
@@ -22,10 +22,10 @@ from common.records import NUMBER, as_dataclass, entries, entry, facts, key
         (float("inf"), NUMBER, "inf must be finite"),
     ],
 )
-def test_others_are_refused(value, kind, told):
-    with pytest.raises(InputError, match=f"^a.json: key = {told}$"):
+def test_others_are_refused(value, kind, message):
+    with pytest.raises(InputError, match=f"^a.json: key = {message}$"):
         entry("a.json", {"key": value}, "key", kind)
-    with pytest.raises(InputError, match=rf"^a.json: list\[2\].key = {told}"):
+    with pytest.raises(InputError, match=rf"^a.json: list\[2\].key = {message}"):
         entry("a.json: list[2]", {"key": value}, "key", kind)
 
 
@@ -35,12 +35,12 @@ def test_lists_of_objects():
         ("x.json: records[0]", {"a": 1}),
         ("x.json: records[1]", {"a": 2}),
     ]
-    for name, told in (
+    for name, message in (
         ("mixed", r"mixed\[1\] = 7 must be an object"),
         ("none", "none = {} must be a list"),
         ("absent", "absent is missing; it must be a list"),
     ):
-        with pytest.raises(InputError, match=f"^x.json: {told}"):
+        with pytest.raises(InputError, match=f"^x.json: {message}"):
             entries("x.json", document, name)
 
 
@@ -71,7 +71,7 @@ def test_an_object_becomes_a_dataclass():
 
 
 @pytest.mark.parametrize(
-    "changed, told",
+    "changed, message",
     [
         ({"steps": 1.5}, "steps = 1.5 must be a whole number"),
         ({"golden": 0.1}, "golden = 0.1 must be an object or null"),
@@ -79,11 +79,11 @@ def test_an_object_becomes_a_dataclass():
         ({"seconds_to_rest": "2"}, "seconds_to_rest = '2' must be a number or null"),
     ],
 )
-def test_an_object_of_another_kind_is_refused(changed, told):
-    with pytest.raises(InputError, match=rf"^a.json: runs\[0\].{told}$"):
+def test_an_object_of_another_kind_is_refused(changed, message):
+    with pytest.raises(InputError, match=rf"^a.json: runs\[0\].{message}$"):
         as_dataclass(Run, "a.json: runs[0]", RECORD | changed)
 
 
-def test_facts_are_what_is_no_list_and_no_object():
+def test_facts_are_neither_lists_nor_objects():
     document = {"revision": "r", "threads": 2, "records": [], "machine": {}, "none": None}
     assert facts(document) == {"revision": "r", "threads": "2"}

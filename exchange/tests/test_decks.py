@@ -189,7 +189,7 @@ def test_a_quasi_static_case_becomes_a_damped_motion():
 
 
 @pytest.mark.parametrize(
-    "program, ending, one, options, told",
+    "program, ending, one, options, message",
     [
         ("abaqus", ".inp", problem(), {}, "--deck abaqus: .*known: calculix, febio, niftysim"),
         ("calculix", ".xml", problem(), {}, r"brick.xml: a deck for CalculiX ends in .inp"),
@@ -206,8 +206,8 @@ def test_a_quasi_static_case_becomes_a_damped_motion():
         ),
     ],
 )
-def test_what_a_program_cannot_express_is_refused(program, ending, one, options, told):
-    with pytest.raises(InputError, match=told):
+def test_unsupported_features_are_refused(program, ending, one, options, message):
+    with pytest.raises(InputError, match=message):
         texts(program, ending, one, **options)
 
 

@@ -148,10 +148,12 @@ DAMAGED = {
 }
 
 
-@pytest.mark.parametrize("name, text, told", [(n, *case) for n in DAMAGED for case in DAMAGED[n]])
-def test_damaged_texts_of_other_programs(tmp_path, capsys, name, text, told):
+@pytest.mark.parametrize(
+    "name, text, message", [(n, *case) for n in DAMAGED for case in DAMAGED[n]]
+)
+def test_damaged_texts_of_other_programs(tmp_path, capsys, name, text, message):
     (tmp_path / name).write_text(text)
-    with pytest.raises(Refused, match=f"{name}: .*{told}"):
+    with pytest.raises(Refused, match=f"{name}: .*{message}"):
         matched(capsys, tmp_path / name)
 
 
@@ -186,7 +188,7 @@ def test_a_field_by_name(tmp_path, capsys):
     assert (matched(capsys, path)[0] == 2 * U).all()
 
 
-def test_a_run_that_did_not_end_well_is_told(tmp_path, capsys):
+def test_a_run_that_did_not_end_well_is_reported(tmp_path, capsys):
     path = FILES["golden"](tmp_path)
     with h5py.File(path, "r+") as file:
         file.attrs["status"] = "inverted"
@@ -240,9 +242,9 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize("make, told", WRONG)
-def test_what_is_not_found_once_is_refused(tmp_path, capsys, make, told):
-    with pytest.raises(Refused, match=told):
+@pytest.mark.parametrize("make, message", WRONG)
+def test_missing_and_ambiguous_data_are_refused(tmp_path, capsys, make, message):
+    with pytest.raises(Refused, match=message):
         matched(capsys, make(tmp_path))
     assert not (tmp_path / "out.h5").exists()
 
@@ -277,5 +279,5 @@ def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys, kind
         try:
             found, _ = matched(capsys, path)
             assert np.isfinite(found).all()
-        except Refused as told:
-            assert path.name in str(told)
+        except Refused as error:
+            assert path.name in str(error)

@@ -37,7 +37,7 @@ def test_the_papers_element_is_near_the_mixed_one_but_not_the_same(example):
 
 @pytest.mark.skipif(importlib.util.find_spec("dolfinx") is None, reason="no FEniCSx")
 def test_a_golden_of_ones_own(example):
-    """The mixed element and its explicit twin agree on a mesh that came from elsewhere."""
+    """The mixed element and its explicit counterpart agree on a mesh that came from elsewhere."""
     case = example / "hook.toml"
     assert sandglass("mesh", case, "-o", example / "mesh.h5").returncode == 0
     solve = ["/usr/bin/python3", ROOT / "reference/solve.py", "golden", case, "--mesh", "mesh.h5"]
@@ -61,10 +61,10 @@ def test_a_page_that_cannot_be_made_leaves_the_old_one(tmp_path, monkeypatch):
     (tmp_path / "build" / "page").mkdir(parents=True)
     (tmp_path / "ci").symlink_to(ROOT / "ci")
     monkeypatch.setenv("SANDGLASS_BINARY", str(Path(command_line.BINARY).resolve()))
-    for words, told in (([], "no case"), (["none.toml"], "neither a file nor a known case")):
+    for words, message in (([], "no case"), (["none.toml"], "neither a file nor a known case")):
         command = ["bash", "ci/page", *words]
         done = ran(*command, cwd=tmp_path)
-        assert done.returncode == 2 and told in done.stderr
+        assert done.returncode == 2 and message in done.stderr
     assert [path.name for path in (tmp_path / "build").iterdir()] == ["page"]
 
 

@@ -26,7 +26,7 @@ def test_last_displacements_are_read(file):
 
 
 @pytest.mark.parametrize(
-    "old, new, told",
+    "old, new, message",
     [
         ("-4  DISP", "-4  DUMMY", "a block ' -4  DISP' is required"),
         ("-2.00000E-03", "-2.000*0E-03", ":16: .*three numbers"),
@@ -41,10 +41,10 @@ def test_last_displacements_are_read(file):
         (FRD, "", "no displacements"),
     ],
 )
-def test_damaged_file(file, old, new, told):
+def test_damaged_file(file, old, new, message):
     assert old in FRD
     file.write_text(FRD.replace(old, new))
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         frd_file.read(file)
 
 

@@ -52,7 +52,7 @@ def edited(tmp_path, form, *changes):
 
 
 @pytest.mark.parametrize(
-    "form, old, new, told",
+    "form, old, new, message",
     [
         ("4.1", b"4.1 0 8", b"4.0 0 8", "version 4.0 of .msh; allowed are 2.2 and 4.1"),
         ("4.1", b"4.1 0 8", b"4.1 7 8", r"\$MeshFormat must be"),
@@ -77,8 +77,8 @@ def edited(tmp_path, form, *changes):
         ("4.1", b"3 1 5 12", b"3 1 99 12", "Gmsh's type 99"),
     ],
 )
-def test_damage_is_named(tmp_path, capsys, form, old, new, told):
-    with pytest.raises(Refused, match=told):
+def test_damage_is_named(tmp_path, capsys, form, old, new, message):
+    with pytest.raises(Refused, match=message):
         read(capsys, edited(tmp_path, form, (old, new)))
 
 
@@ -117,9 +117,9 @@ def test_an_entity_may_have_no_nodes(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "other, told", [(True, "type 'hexahedron of 20"), (False, "has only line")]
+    "other, message", [(True, "type 'hexahedron of 20"), (False, "has only line")]
 )
-def test_how_gmsh_makes_hexahedra_is_told(tmp_path, capsys, other, told):
+def test_how_gmsh_makes_hexahedra_is_explained(tmp_path, capsys, other, message):
     """Files without hexahedra: with other volume elements, or none as no group saves them."""
     text = (DATA / "block-2.2.msh").read_bytes().decode()
     begin, end = text.index("$Elements"), text.index("$EndElements")
@@ -129,7 +129,7 @@ def test_how_gmsh_makes_hexahedra_is_told(tmp_path, capsys, other, told):
         kept.append("9 17 2 10 25 " + " ".join(map(str, range(1, 21))))
     elements = "\n".join(["$Elements", str(len(kept)), *kept, ""])
     (tmp_path / "a.msh").write_text(text[:begin] + elements + text[end:])
-    with pytest.raises(Refused, match=told + ".*Transfinite Volume.*`gmsh -3`.*Physical Volume"):
+    with pytest.raises(Refused, match=message + ".*Transfinite Volume.*`gmsh -3`.*Physical Volume"):
         read(capsys, tmp_path / "a.msh")
 
 

@@ -252,14 +252,14 @@ half_sizes = [3, 2, 1]
     ends = {"point": (0.0, 0.0, 1.0), "end": (1.0, 0.0, 1.0), "radius": 0.5}
     assert tool == Obstacle("top", "capsule", ends, (0.0, 0.0, -1.0), penalty=7.0)
     assert room.inside and room.parameters["half_sizes"] == (3.0, 2.0, 1.0)
-    for wrong, told, error in (
+    for wrong, message, error in (
         ("capsule", "cone", "shape = 'cone' is not known"),
         ("radius = 0.5", "", "radius"),
         ("penalty", "friction", "friction"),
         ("inside", "outside", "unknown key"),
         ('name = "press"', 'name = "press", answer = "dynamic"', "motion"),
     ):
-        path.write_text(text.replace(wrong, told))
+        path.write_text(text.replace(wrong, message))
         with pytest.raises(InputError, match=error):
             read_case(path)
 

@@ -83,7 +83,7 @@ def test_attributes_hold_the_distance_of_the_stored_field_from_the_limit():
         assert found["own_error_note"].endswith("3 meshes; order 2.00: measured")
 
 
-def test_what_is_not_estimated_says_why():
+def test_a_missing_estimate_has_a_reason():
     found = attributes_of([LIMIT], LIMIT, unit=1.0, reason="a mesh of 9 cells would cost too much")
     assert math.isnan(found["own_error_max"]) and math.isnan(found["own_error_order"])
     assert found["own_error_note"] == "not estimated: a mesh of 9 cells would cost too much"
@@ -91,7 +91,7 @@ def test_what_is_not_estimated_says_why():
     assert apart["own_error_note"] == "not estimated: differences do not fall"
 
 
-def test_splits_stay_below_the_cells_that_are_affordable():
+def test_splits_stay_below_the_largest_number_of_cells():
     for cells in (1, 5, 160, 270, 1100, 1500, 10**6):
         splits = convergence.splits_of(cells)
         assert splits == 0 or cells * 8**splits <= convergence.MOST_CELLS
@@ -100,7 +100,7 @@ def test_splits_stay_below_the_cells_that_are_affordable():
         )
 
 
-def test_an_estimate_leaves_the_displacement_as_it_is(tmp_path):
+def test_an_estimate_does_not_change_the_displacement(tmp_path):
     source = path_of("golden", "column")
     points, displacement, attributes = read_reference(source)
     path = tmp_path / "golden.h5"

@@ -14,13 +14,13 @@ FORMULAS = read_toml(ROOT / "verification" / "formulas.toml")
 
 @pytest.mark.parametrize("one", FORMULAS["good"], ids=lambda one: one["formula"])
 def test_values_are_those_of_40_digits(one):
-    """Some roundings, of numbers near one; C++ has the same tolerance."""
+    """A few roundings of numbers near one; C++ has the same tolerance."""
     for t, value in zip(FORMULAS["times"], one["values"], strict=True):
         assert abs(formula.evaluate(one["formula"], t) - value) < 1e-15 * max(1, abs(value))
 
 
 @pytest.mark.parametrize("one", FORMULAS["wrong"], ids=lambda one: one["formula"])
-def test_what_is_no_formula_is_refused(one):
+def test_invalid_formulas_are_refused(one):
     with pytest.raises(InputError, match="formula"):
         formula.evaluate(one["formula"], 0.0)
 

@@ -77,7 +77,7 @@ def test_output_that_cannot_be_written(folder, capsys):
         assert f"{output}: cannot be written" in capsys.readouterr().err
 
 
-def test_files_that_are_no_mesh(folder, capsys):
+def test_files_without_a_mesh(folder, capsys):
     content = (folder / "mesh.h5").read_bytes()
     (folder / "mesh.h5").write_bytes(content[: len(content) // 2])
     assert _run(folder) == 2

@@ -38,7 +38,7 @@ NUMBERS = {
     "relaxation_2": "0.15",
     "time_2": "50.0",
 }
-# Nearer to 0.5 the element that averages the pressure gives way; see the solver's header.
+# Closer to 0.5 the element that averages the pressure loses its stiffness; see the solver's header.
 OF_LAW = {"st-venant-kirchhoff": {"poisson_ratio": "0.1"}}
 
 

@@ -72,7 +72,7 @@ def test_layers_carry_the_same_stress(make):
 @ELEMENTS
 @pytest.mark.parametrize("only_normal", [False, True])
 def test_springs_carry_the_weight(make, only_normal):
-    """k times the mean displacement times the area; with nothing else that holds the body."""
+    """The weight is k times the mean displacement times the area; nothing else holds the body."""
     points, cells, _ = distorted_block(distortion=0.0)
     foot = _at(points, 2, 0.0)
     surfaces = (Surface(foot, stiffness=1e6, only_normal=only_normal),)
@@ -81,7 +81,7 @@ def test_springs_carry_the_weight(make, only_normal):
     problem = make(mesh, [STIFF])
     solve(problem, 1, 1e-10)
     u = problem.nodal_displacement()[: len(points)]
-    if make is MixedProblem:  # of a quadratic face the corners alone say little
+    if make is MixedProblem:  # the corners of a quadratic face are not enough
         on_edge = sum(_at(points, axis, end).astype(int) for axis in (0, 1) for end in (0.0, 1.0))
         share = 0.5 ** on_edge[foot] / (len(cells) ** (1 / 3)) ** 2
         assert abs((share * u[foot, 2]).sum() * 1e6 / (-0.05 * 2000.0) - 1) < 1e-9
@@ -102,7 +102,7 @@ support = [{ set = "b", stiffness = 5.0, damping = 2.0, only_normal = true }]
     assert case.pressures[0].value == 1.5 and case.gravity == (3.0, 1.0, 2.0)
     assert dataclasses.astuple(case.supports[0]) == ("b", 5.0, True)
     assert case.materials[0].density == 7.0
-    for wrong, told in (("stiffness = 5.0", "stiffness = 'a'"), ("value = 3.0", "valu = 3.0")):
-        path.write_text(text.replace(wrong, told))
+    for wrong, new in (("stiffness = 5.0", "stiffness = 'a'"), ("value = 3.0", "valu = 3.0")):
+        path.write_text(text.replace(wrong, new))
         with pytest.raises(InputError, match="support|pressure"):
             read_case(path)

@@ -56,7 +56,7 @@ def test_steps_are_those_of_the_trapezoidal_rule(damping):
         assert np.abs(u - amplitude * velocity / SPEED).max() < 1e-5 * SPEED / _frequency()
 
 
-def test_extrapolated_motion_is_as_near_as_it_says():
+def test_extrapolated_motion_is_as_accurate_as_its_estimate():
     mesh, velocity = _bar()
     motion = Motion(3.0, 1.0, 0.7, 3)
     golden = solve_motion(mesh, [BAR], motion, velocity)
@@ -88,7 +88,7 @@ def test_a_pulse_leaves_its_impulse():
     motion = Motion(4.0, 1.0, 0.0, 4)
     found, _ = integrate(mesh, [BAR], motion, np.zeros_like(mesh.points), 8)
     masses = np.repeat([0.5, *[1] * (ELEMENTS - 1), 0.5], 4) / ELEMENTS / 4
-    # The rule integrates what is linear in time exactly; round-off of forces of 1e-9 beside 3 Pa.
+    # The rule integrates linear functions of time exactly; round-off of forces of 1e-9 beside 3 Pa.
     flown = masses @ (found[3] - found[2])[:, 2]
     assert flown * 2.0 * 0.01 * LENGTH == pytest.approx(push, rel=1e-5)
 
@@ -140,7 +140,7 @@ def test_golden_has_its_times_and_figures(plain):
     assert attributes["largest_imposed"] == pytest.approx(largest, rel=1e-12)
 
 
-def test_solver_nears_the_golden_with_the_square_of_its_step(small, plain):
+def test_solver_converges_to_the_golden_with_the_square_of_its_step(small, plain):
     errors = []
     for step in ("1e-3", "5e-4", "2.5e-4"):  # whole parts of the frames
         code, error, text = _verify(small(("TIME_STEP", step), golden_of=plain))
@@ -161,7 +161,7 @@ def _changed(path, change):
 
 
 def test_a_motion_that_is_a_step_late_breaks_the_limit(small, plain):
-    """The limit is three times what the step leaves; one step late is far beyond."""
+    """The limit is three times the error of the step; one step late is far beyond."""
     _, error, _ = _verify(plain)
     folder = small(("BELOW", f"{3 * error}"), golden_of=plain)
     assert _verify(folder)[0] == 0
@@ -173,7 +173,7 @@ def test_a_motion_that_is_a_step_late_breaks_the_limit(small, plain):
 
 @pytest.mark.parametrize("change", [("density = 1000.0", "density = 1100.0"), ("= 5.0", "= 6.0")])
 def test_golden_of_another_motion(small, plain, change):
-    """By its hash it is refused; with a false one it breaks the limit."""
+    """It is refused because of its hash; with a forged hash it breaks the limit."""
     folder = small(change, golden_of=plain)
     code, _, text = _verify(folder)
     assert code == 2 and "case_hash" in text and "reference/regenerate small" in text

@@ -47,7 +47,7 @@ def test_nodes_stay_on_their_circles(load):
 
 
 @ELEMENTS
-def test_a_turned_body_is_at_rest(make):
+def test_a_turned_body_is_in_equilibrium(make):
     mesh = _turned_block(4.0)
     problem = make(mesh, MATERIALS)
     newton_solve(problem, 20, 1e-10)
@@ -57,7 +57,7 @@ def test_a_turned_body_is_at_rest(make):
     assert np.abs(forces).max() < 1e-8  # N, of a modulus of 3000 Pa on 1 m^2
 
 
-def test_largest_imposed_is_that_of_the_way():
+def test_largest_imposed_is_the_largest_on_the_path():
     points, cells, _ = distorted_block(n=1)
     for angle in (0.5, np.pi, 2 * np.pi, -2 * np.pi):
         turn = turn_about(points, np.array([0.0, 0.0, 1.0]), points.mean(axis=0), angle)
@@ -75,7 +75,7 @@ def _solve(folder, text):
     return solve.main([str(a) for a in arguments + ["-o", folder / "out.h5"]])
 
 
-def test_once_round_is_not_the_state_of_rest(folder):
+def test_a_full_turn_is_not_the_undeformed_state(folder):
     text = CASE[: CASE.rindex("[[displacement]]")] + TURNED
     assert _solve(folder, text) == 0
     points, displacement, attributes = read_reference(folder / "out.h5")
@@ -85,7 +85,7 @@ def test_once_round_is_not_the_state_of_rest(folder):
     assert relative_errors(displacement, np.zeros_like(displacement), 1.0)[0] > 0.1
 
 
-def test_turning_twice_alike_is_allowed_and_otherwise_refused(folder, capsys):
+def test_equal_rotations_of_a_node_are_allowed_and_others_refused(folder, capsys):
     start = CASE[: CASE.rindex("[[displacement]]")]
     assert _solve(folder, start + TURNED + TURNED.replace("360.0", "360")) == 0
     assert _solve(folder, start + TURNED + TURNED.replace("360.0", "720.0")) == 2

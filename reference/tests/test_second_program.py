@@ -80,7 +80,7 @@ def test_materials_and_loads(program, stiff, only_normal):
     assert np.abs(answers[0] - answers[1]).max() < SAME * np.abs(answers[1]).max()
 
 
-def test_what_cannot_be_said_is_refused(capsys):
+def test_unsupported_problems_are_refused(capsys):
     points, cells, boundary = distorted_block(n=2)
     held = (Condition(boundary, (0, 1, 2), np.zeros_like(points)),)
     with pytest.raises(InputError, match="no term for the law 'yeoh'"):

@@ -85,7 +85,7 @@ def test_stored_motion_belongs_to_its_case(name, mesh_of):
     for time, u in zip(attributes["times"], displacement, strict=True):
         prescribed, values = mesh.imposed(case.motion.load_factor(time))
         assert np.abs(u[prescribed] - values[prescribed]).max() <= 1e-12 * np.abs(u).max()
-    assert attributes["halving_max"] < 1e-4  # what was asked of a golden of motion
+    assert attributes["halving_max"] < 1e-4  # the requirement for a golden of motion
     assert attributes["last_correction"] < attributes["newton_tolerance"]
 
 

@@ -1,4 +1,4 @@
-"""Quadratic tetrahedra cut from hexahedra: they fit, fill, and answer as they should."""
+"""Quadratic tetrahedra cut from hexahedra: they conform, fill the body and converge."""
 
 import dataclasses
 
@@ -16,7 +16,7 @@ from taylor_hood import TaylorHoodProblem, _slopes
 from tetrahedra import cut
 
 GRADIENT = [[0.2, 0.1, -0.1], [0.05, -0.1, 0.15], [-0.1, 0.1, 0.05]]
-# One cell, two that share an edge or a vertex at most, most of them: all kinds of faces that hang.
+# One cell, two that share at most an edge or a vertex, most cells: all kinds of hanging faces.
 SPLITS = [[], [0], [3, 17], [13, 4, 22, 9, 1], list(range(2, 27))]
 
 
@@ -116,7 +116,7 @@ def test_a_traction_has_its_sum_and_moment():
     assert np.abs(np.cross(arms, forces).sum(axis=0) + moment).max() < 1e-13
 
 
-def test_an_answer_is_taken_over_by_another_mesh():
+def test_an_answer_is_interpolated_to_another_mesh():
     block = affine_patch(GRADIENT, bulge=0.3)
     coarse = TaylorHoodProblem(cut(with_hanging_nodes(block, [0])), MATERIALS)
     solve(coarse, 1, 1e-10)

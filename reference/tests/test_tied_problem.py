@@ -1,4 +1,4 @@
-"""Nodes that hang: a linear field is an answer, in FEniCSx and in SfePy, and forces are kept."""
+"""Hanging nodes: a linear field is an answer, in FEniCSx and in SfePy, and forces are conserved."""
 
 import dataclasses
 import itertools
@@ -21,8 +21,8 @@ GRADIENT = [[0.02, 0.05, -0.03], [0.04, -0.03, 0.02], [-0.05, 0.01, 0.02]]
 def block():
     """A distorted cube of eight cells, the first split in eight: (HexMesh, values, inside).
 
-    Its nodes in the middle of edges and faces of other cells hang. Imposed is a linear field, but
-    inside, (n,) bool: at nodes that hang, and at the one in the middle of the cube.
+    Its nodes in the middle of edges and faces of other cells hang. A linear field is imposed except
+    at inside, (n,) bool: hanging nodes, and the node in the middle of the cube.
     """
     points, cells, boundary = distorted_block(n=2)
     split = refine(HexMesh(points, cells[:1], ()))
@@ -56,14 +56,14 @@ def test_patch(block, program):
 
 
 def test_without_ties_it_is_no_answer(block):
-    """The test above would notice: nodes that do not follow open cracks."""
+    """The test above can fail: cracks open at nodes that do not follow."""
     mesh, values, _ = block
     problem = MixedProblem(mesh, MATERIALS)
     solve(problem, 1, 1e-10)
     assert np.abs(problem.nodal_displacement() - values).max() > 1e-4
 
 
-def test_forces_are_handed_on(block):
+def test_forces_are_transferred(block):
     mesh, values, inside = block
     problem = TiedProblem(MixedProblem(mesh, MATERIALS), mesh.ties)
     moved = np.random.default_rng(1).normal(scale=0.01, size=values.size)
@@ -71,7 +71,7 @@ def test_forces_are_handed_on(block):
     forces, _ = problem.mixed_residual()
     of_nodes = forces[problem.node_dofs()]
     assert (of_nodes[mesh.ties[0]] == 0).all() and (of_nodes[~inside] != 0).all()
-    # Internal forces keep momentum.
+    # Internal forces conserve momentum.
     np.testing.assert_allclose(of_nodes.sum(axis=0), 0.0, atol=1e-10 * np.abs(forces).max())
 
 

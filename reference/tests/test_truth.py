@@ -1,4 +1,4 @@
-"""Truths: their meshes, their file, and what is refused."""
+"""Truths: their meshes, their file, and refused input."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from tetrahedra import cut
 
 
 def test_every_truth_has_meshes():
-    """But for two whose sides fold too far: theirs are of an earlier kind (README)."""
+    """Except for two whose sides fold too far: theirs are of an earlier kind (README)."""
     folded = {"block-compression", "cylinder-compression"}
     assert set(stored("truth")) == set(truth.GRADINGS) | folded
 
@@ -45,7 +45,7 @@ def test_a_coarse_truth_is_near_the_stored_one(tmp_path, monkeypatch):
     points, displacement, found = read_reference(tmp_path / "truth.h5")
     _, expected, attributes = read_reference(path_of("truth", name))
     distance, _ = relative_errors(displacement, expected, attributes["largest_imposed"])
-    # The bar holds, and is not much too long.
+    # The error bar holds, and is not much too long.
     bars = found["own_error_max"] + attributes["own_error_max"]
     assert 0.5 * bars < distance < bars
     assert found["own_error_max"] < 0.01
@@ -59,7 +59,7 @@ def test_a_bar_adds_up_edges_and_inside():
     limit = np.ones((2, 3))
     far, near = ([limit * (1 + c / 2**n) for n in range(3)] for c in (0.4, 0.1))
     edges = truth.error_bar([far, near], None, 1.0)
-    # Halved from mesh to mesh: what is left is the last of it, 0.1 and 0.025 in each component.
+    # Halved from mesh to mesh: the last difference remains, 0.1 and 0.025 in each component.
     assert edges["own_error_max"] == pytest.approx(0.125 * 3**0.5)
     assert edges["own_error_note"].startswith("edges alone: ")
     both = truth.error_bar([far, near], np.array([[0.03, 0, 0], [0, 0, 0]]), 1.0)

@@ -22,8 +22,8 @@ def view_of(points):
 
 
 def gallery_panel(subject):
-    """A case, undeformed and deformed, side by side at one scale; its title says whose answer it
-    is. None if the case has no mesh, or none of the answers that `answer_to_show` allows."""
+    """A case, undeformed and deformed, side by side at one scale; its title names the source of the
+    answer. None if the case has no mesh, or none of the answers that `answer_to_show` allows."""
     shown = answer_to_show(subject)
     if subject.points is None or shown is None:
         return None
@@ -93,10 +93,10 @@ def _scale_setters(subject, shapes):
 
 
 def answer_to_show(subject):
-    """The displacement that stands for a case, (n, 3), m, and whose answer it is, in words.
+    """The displacement that represents a case, (n, 3), m, and its source in words.
 
-    That of the golden or, without one, of the method whose errors the page shows beside it: never
-    that of another method. None if there is neither.
+    The golden's or, without a golden, that of the method whose errors the page shows beside it,
+    never that of another method. None if there is neither.
     """
     if subject.golden is not None:
         return subject.golden.displacement, "the golden"

@@ -1,6 +1,6 @@
-"""What the runs found, in words: captions of cases, and one line about all that failed.
+"""The findings of the runs in words: captions of cases, and one line about all failures.
 
-Everything here is made from the verdicts, so that no caption says more than the table beside it.
+Everything here is made from the verdicts, so that captions and tables agree.
 """
 
 from dataclasses import dataclass
@@ -25,9 +25,9 @@ LARGEST_GOOD = 0.1  # largest_good_limit of suite/comparison/finding.hpp
 
 
 def caption(subject, method, limits):
-    """The sentences on what was found for a case: of a method, of all of them, and of its limits.
+    """The sentences about a case: one method's finding, all methods' findings, and its limits.
 
-    limits: all those of the verdicts.
+    limits: all limits of the verdicts.
     """
     found = [_of_method(subject, method), _of_kappas(subject, method)]
     own = subject.golden_to_truth()
@@ -42,7 +42,7 @@ def caption(subject, method, limits):
 
 
 def verb(finding):
-    """What a method does that has this finding, such as "locks"."""
+    """The verb for a finding, such as "locks"."""
     return VERBS.get(finding, f"is found {finding}")
 
 
@@ -69,7 +69,7 @@ def _of_method(subject, method):
 
 
 def _why_good(subject, run):
-    """Why a run is good at more than the usual limit: the golden has an error, too."""
+    """Why a run beyond the usual limit is still good: the golden has an error, too."""
     own = subject.golden_to_truth()
     if run.finding != "good" or run.golden.max <= USUAL_LIMIT or own is None:
         return ""
@@ -91,7 +91,7 @@ def _of_kappas(subject, method):
 
 
 def _of_all(subject):
-    """How many methods have which finding."""
+    """The number of methods with each finding."""
     words = [judged(run) for run in subject.runs if run.is_main and judged(run)]
     if not words:
         return ""
@@ -112,18 +112,18 @@ def _of_limits(limits):
 class Failures:
     """The runs with default settings that end without an answer."""
 
-    expected: tuple  # of methods that a limit demands to fail, on this case or another
+    expected: tuple  # of methods that a limit requires to fail, on this case or another
     unexpected: tuple
     not_taken: tuple  # of methods that do not support the case
     total: int  # runs with default settings, these included
 
     @property
     def count(self):
-        """How many runs failed; one that was not taken did not."""
+        """The number of failed runs; unsupported cases do not count."""
         return len(self.expected) + len(self.unexpected)
 
     def sentences(self):
-        """All of it in a few sentences; what was not expected with its reason."""
+        """All failures in a few sentences; unexpected ones with their reasons."""
         found = []
         if self.count:
             found.append(f"{self.count} of {self.total} runs with default settings fail")
@@ -141,8 +141,8 @@ class Failures:
 def failures(verdicts):
     """The Failures of the verdicts.
 
-    A failure is expected if some case demands an error of the method above a limit: such a method
-    is in the suite to fail.
+    A failure is expected if some case requires the method's error to exceed a limit: such a
+    method is in the suite to fail.
     """
     meant = {limit.method for limit in verdicts.limits if limit.above is not None}
     main = [run for run in verdicts.runs if run.is_main]
@@ -156,7 +156,7 @@ def failures(verdicts):
 
 
 def _on_cases(runs):
-    """The methods of runs with their cases: names of up to two of them, else how many."""
+    """The methods of runs with their cases: the names of up to two, else their number."""
     cases = {}
     for run in runs:
         cases.setdefault(run.method, []).append(run.case)

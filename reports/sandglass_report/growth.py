@@ -1,4 +1,4 @@
-"""How the cost of an answer grows with the mesh and as Poisson's ratio nears one half."""
+"""The growth of an answer's cost with the mesh, and as Poisson's ratio nears one half."""
 
 from common.errors import InputError
 from common.files import read_json

@@ -1,7 +1,7 @@
 """The README's figure: one case, five methods, their error to truth and golden, and their cost.
 
-A small document holds the records that it shows. Figure and caption are made from it alone, so that
-a test can make them again, and compare the document with what the program computes now.
+A small document holds its records. Figure and caption are made from it alone, so that a test can
+make them again and compare the document with what the program computes now.
 """
 
 import re
@@ -17,7 +17,7 @@ from sandglass_report.style import plain
 CASE = "ellipsoid-indentation"
 NAME = "speed-accuracy"
 COMMAND = "/usr/bin/python3 reports/make_headline.py"
-# Method -> what it is in the figure: one of each kind that a reader may know.
+# Method -> its description in the figure: one of each kind that a reader may know.
 METHODS = {
     "linear": "one point, small strains",
     "tl-perturbation": "one point, hourglass control",
@@ -31,7 +31,7 @@ PAPERS = "tl-perturbation"
 START, END = "<!-- figure: reports/make_headline.py -->", "<!-- end of the figure -->"
 LINE = 138  # letters of a line of the caption
 FACTS = ("version", "revision", "processor", "compiler", "build_flags")
-# What a record has of a method -> how a Point of the main chart has it.
+# Key of a record -> the corresponding field of a Point of the main chart.
 NUMBERS = {
     "golden": lambda point: point.error("golden", "max"),
     "truth": lambda point: point.error("truth", "max"),
@@ -44,7 +44,7 @@ NUMBERS = {
 
 
 def headline(points, own):
-    """The document of the figure, or None unless every method has its errors and costs.
+    """The document of the figure; None if a method lacks errors or costs.
 
     points: of the main chart. own: provenance of the verdicts.
     """
@@ -69,7 +69,7 @@ def headline(points, own):
 
 
 def require_valid(path, document):
-    """Raises InputError unless a document has what the figure needs. path: for messages."""
+    """Raises InputError if a document lacks something that the figure needs. path: for messages."""
     for key, kind in (("case", str), ("elements", int)):
         entry(path, document, key, kind)
     for where, record in entries(path, document, "methods"):
@@ -113,10 +113,10 @@ def caption(document, drawn, glossary):
 
 
 def in_real_time(elements, seconds):
-    """Elements whose simulated second takes one second, as text with two digits.
+    """The number of elements that run in real time, as text with two digits.
 
-    elements: whose simulated second takes `seconds`, of wall time. Steps depend on the size of
-    elements, not on their number, so that the time grows with the number.
+    elements: a number whose simulated second takes `seconds` of wall time. Steps depend on the size
+    of elements, not on their number, so the time is proportional to the number.
     """
     return f"{float(f'{elements / seconds:.2g}'):,.0f}"
 
@@ -135,7 +135,7 @@ def in_words(document):
 
 
 def replaced(text, block):
-    """A Markdown text with another figure between its two marks. Raises InputError without them."""
+    """A Markdown text with a new figure between its two marks. Raises InputError without them."""
     before, start, rest = text.partition(START)
     _, end, after = rest.partition(END)
     if not start or not end:

@@ -62,10 +62,10 @@ def drawing(document, rows):
 
 
 def shown(error):
-    """An error in percent; 0 below what is counted as one."""
+    """An error in percent; 0 if it counts as zero."""
     return "0 %" if error < style.FLOOR else style.percent(error, 2)
 
 
 def _between(share, ends):
-    """The place of a share between two ends."""
+    """The position at a share of the way between two ends."""
     return ends[0] + share * (ends[1] - ends[0])

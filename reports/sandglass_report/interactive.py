@@ -14,7 +14,7 @@ from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES
 FAILURES = ("hourglassing", "locking", "inverted", "unstable", "not at rest")
 
 
-# The mark of entries of results/: other programs, and ours beside them.
+# The mark of the entries in results/: other programs, and ours beside them.
 OTHER = {"css": "--ink", "symbol": "star"}
 
 
@@ -41,7 +41,7 @@ def chart_data(points, palette, others=()):
 
 
 def _words(quantity):
-    """What the script writes at axes and marks, and says on request."""
+    """Texts that the script writes at axes and marks, and shows on request."""
     return {"title": quantity.name, "head": quantity.head, "definition": quantity.definition}
 
 

@@ -135,7 +135,7 @@ def _error_panel(name, subject, lines, reference):
 
 
 def _is_golden(line, subject):
-    """Whether an answer other than the golden cannot be told from it by eye."""
+    """Whether another answer looks the same as the golden."""
     if line.name in ("golden", "truth") or subject.golden is None:
         return False
     distances = relative_distances(

@@ -1,4 +1,4 @@
-"""Files of commands other than verify: counts, times, ladders, maps. All may be absent."""
+"""Files of commands other than verify: counts, times, candidates, maps. All may be absent."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,22 +19,22 @@ REFERENCE_NAMES = {"golden": "golden", "truth": "truth", STAND_IN: "golden"}
 
 
 @dataclass(frozen=True)
-class Rung:
+class Candidate:
     """One row of `sandglass choose --all --json`: a method, a precision and a mesh on a case."""
 
     case: str
     reference: str  # golden or truth
-    stands_in: bool  # for the golden stands its own element among the methods
-    tolerance: float  # that was asked for, a fraction
+    stands_in: bool  # the golden's own element stands in for it
+    tolerance: float  # as requested, a fraction
     method: str
-    kappa: float | None  # None: as it comes
-    accuracy: float | None  # asked of an adaptive method, a fraction
+    kappa: float | None  # None: default
+    accuracy: float | None  # requested of an adaptive method, a fraction
     precision: str
     mesh: str
     elements: int
     step_size: float | None  # s, mean of the motion; None where nothing moves
     error: float | None  # largest of all nodes, a fraction of the imposed displacement
-    reason: str  # why it is not enough; empty where it is
+    reason: str  # why it is not enough; empty if it is
     step_remark: str  # about steps of single states; mostly empty
     facts: dict  # of its file: machine and revision
     name: str = key("rung")  # of method, kappa or accuracy, precision and mesh
@@ -80,7 +80,7 @@ class Source:
 class Measured:
     """The contents of all files."""
 
-    rungs: tuple = ()
+    candidates: tuple = ()
     steps: tuple = ()
     counts: tuple = ()
     maps: tuple = ()  # documents of sandglass stability
@@ -107,19 +107,19 @@ def read_measured(bench, flops, curves, maps, kept_maps):
 
     steps = [as_dataclass(Step, *one) for one in records(bench, BENCH) if _is_step(*one)]
     counts = [as_dataclass(Count, *one) for one in records(flops, FLOPS)]
-    rungs = []
+    candidates = []
     for path in _files(curves, CURVES, sources):
-        rungs += rungs_of(path, _document(path, CURVES, sources))
+        candidates += candidates_of(path, _document(path, CURVES, sources))
     found = {}
     for path in (*sorted(Path(maps).glob("*.json")), *_files(kept_maps, MAPS, sources)):
         document = read_maps(path)
         if found.setdefault(document["case"], document) is document:
             sources.append(Source(str(path), MAPS, facts(document)))
-    return Measured(*map(tuple, (rungs, steps, counts, found.values(), sources)))
+    return Measured(*map(tuple, (candidates, steps, counts, found.values(), sources)))
 
 
 def _files(folder, command, sources):
-    """The JSON files of a folder; if there are none, that is recorded."""
+    """The JSON files of a folder; their absence is recorded."""
     found = sorted(Path(folder).glob("*.json"))
     if not found:
         sources.append(Source(f"{folder}/*.json", command, None))
@@ -140,8 +140,8 @@ def _is_step(where, record):
     return has_time and on_packs and entry(where, record, "threads", int) == 1
 
 
-def rungs_of(path, document):
-    """The Rungs of a document of `sandglass choose --all --json`. Raises InputError.
+def candidates_of(path, document):
+    """The Candidates of a document of `sandglass choose --all --json`. Raises InputError.
 
     path: its file, for messages.
     """
@@ -154,4 +154,4 @@ def rungs_of(path, document):
         "tolerance": entry(path, document, "tolerance", NUMBER),
         "facts": facts(document),
     }
-    return [as_dataclass(Rung, *found, **known) for found in entries(path, document, "rungs")]
+    return [as_dataclass(Candidate, *found, **known) for found in entries(path, document, "rungs")]

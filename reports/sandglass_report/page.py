@@ -71,7 +71,7 @@ class PaperSection:
 def with_hard_spaces(html):
     """HTML in whose text no line ends between a number and its %. Scripts and tags stay."""
     parts = re.split(r"(<(script|style)\b.*?</\2>|<[^>]*>)", html, flags=re.DOTALL)
-    # Of each three: text, what is between texts, the name of a script or style.
+    # Groups of three: text, markup between texts, the name of a script or style.
     parts[::3] = [re.sub(r"(?<=\d) %", "\u00a0%", text) for text in parts[::3]]
     del parts[2::3]
     return "".join(parts)
@@ -172,7 +172,7 @@ def _of_measured(inputs, palette):
     own, points = inputs.verdicts.provenance, inputs.points
     others = [s for s in inputs.submissions if elements.get(s.entry["case"])]
     programs = dict.fromkeys(s.entry["program"] for s in others)
-    ladders = [name for name in names if any(rung.case == name for rung in found.rungs)]
+    curves = [name for name in names if any(c.case == name for c in found.candidates)]
     map_texts = maps.map_texts(sorted(found.maps, key=lambda m: m["case"] != paper.FIRST_CASE))
     pictures = [p for p in inputs.pictures if p.stem not in {m.name for m in map_texts}]
     return {
@@ -194,8 +194,8 @@ def _of_measured(inputs, palette):
         "run_numbers": RUN_NUMBERS,
         "chart_cases": names,
         "first_case": paper.FIRST_CASE if paper.FIRST_CASE in names else names[0],
-        "ladder_cases": ladders,
-        "missing_ladders": [name for name in names if name not in ladders],
+        "curve_cases": curves,
+        "missing_curves": [name for name in names if name not in curves],
         "plotly": interactive.packed_plotly(),
         "table_1": replication.table_1(found.counts),
         "table_2": replication.table_2(points),

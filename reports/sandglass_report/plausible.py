@@ -1,4 +1,4 @@
-"""Whether the marks of the chart can be true: a page with a mark that cannot is not made.
+"""Plausibility of the chart's marks: no page is made with an impossible one.
 
 Each rule below is a function of Marks that yields a complaint for every mark that breaks it; its
 docstring is the rule. A cost of another loop, a step of another state or a value in another unit
@@ -15,11 +15,11 @@ from sandglass_report.provenance import elsewhere
 from sandglass_report.style import FLOOR
 
 # Soft bodies of millimetres and more: a wave of 10 m/s takes 0.1 ms through an element of 1 mm. A
-# hundredth of that is another quantity. A stiff body has short steps at rest already, and the mean
-# of its motion is not far below them.
+# hundredth of that is a mistake. A stiff body has short steps even when undeformed, and the
+# mean of its motion is not far below them.
 LEAST_STEP = 1e-6  # s
-LEAST_SHARE = 0.01  # of the step at rest
-# Eleven days for a second: nobody waited for it.
+LEAST_SHARE = 0.01  # of the undeformed step
+# Eleven days for a second: nobody waits for that.
 MOST_WALL = 1e6  # s per simulated second
 # Two measurements of one loop on one machine, of which one may have been busy.
 BENCH_AGREES = 1.3
@@ -27,17 +27,17 @@ BENCH_AGREES = 1.3
 UPDATED_AT_LEAST = 1.5
 OPERATIONS_AGREE = 2.0
 ADAPTIVE, EIGHT_POINTS = "tl-adaptive", "tl-mean-dilatation"
-AS_IT_COMES = OWN_MESH, "double", None, None  # mesh, numbers, kappa and accuracy of a rung
+AS_IT_COMES = OWN_MESH, "double", None, None  # mesh, numbers, kappa and accuracy of a candidate
 COUNTED = "kernel", "element"  # form and part of the flop table
-# One division, or one relaxation to 1e-8 of the forces: what differs is rounded to be read.
+# One division, or one relaxation to 1e-8 of the forces: differences are those of printed digits.
 SAME = 0.01
 
 
 @dataclass(frozen=True)
 class Marks:
-    """What the rules look at.
+    """The data that the rules check.
 
-    points: of the main chart. steps: of bench, and rungs: of choose, if of the same origin.
+    points: of the main chart. steps: of bench, and candidates: of choose, if of the same origin.
     table: method -> operations of an element and step in the flop table. loaded: cases with
     pressures or supports, whose time is part of a step and in no count of a method.
     """
@@ -45,11 +45,11 @@ class Marks:
     points: tuple
     steps: tuple = ()
     table: dict = field(default_factory=dict)
-    rungs: tuple = ()
+    candidates: tuple = ()
     loaded: frozenset = frozenset()
 
     def own(self):
-        """The points of the methods as they come, on the cases' own meshes, in double."""
+        """The points of the methods with default settings, on the cases' own meshes, in double."""
         return [
             p
             for p in self.points
@@ -57,9 +57,9 @@ class Marks:
         ]
 
     def least_step(self, case):
-        """The shortest mean step, s, that the body of a case can have."""
-        at_rest = [p.stable_step for p in self.points if p.case == case and p.stable_step]
-        return min(LEAST_STEP, LEAST_SHARE * min(at_rest, default=1.0))
+        """The shortest possible mean step of a case's body, s."""
+        undeformed = [p.stable_step for p in self.points if p.case == case and p.stable_step]
+        return min(LEAST_STEP, LEAST_SHARE * min(undeformed, default=1.0))
 
     def work(self, point):
         """(least, most) operations per element and step: of the flop table or, if more, the case's.
@@ -86,7 +86,7 @@ class Marks:
 
 
 def steps_are_of_soft_bodies(marks):
-    """A mean step is at least 1e-6 s, or a hundredth of that at rest"""
+    """A mean step is at least 1e-6 s, or a hundredth of the undeformed one"""
     least = {case: marks.least_step(case) for case in {p.case for p in marks.points}}
     for p in marks.points:
         if p.mean_step is not None and not p.mean_step >= least[p.case]:
@@ -94,7 +94,7 @@ def steps_are_of_soft_bodies(marks):
 
 
 def seconds_can_be_waited_for(marks):
-    """A simulated second takes less than 1e6 s of wall time, unless steps at rest are short"""
+    """A simulated second takes less than 1e6 s of wall time, unless undeformed steps are short"""
     for p in marks.points:
         most = MOST_WALL * LEAST_STEP / marks.least_step(p.case)
         if p.simulated is not None and not 0 < p.simulated < most:
@@ -151,16 +151,16 @@ def times_follow_operations(marks):
 def references_are_the_same(marks):
     """The errors of verify and choose to one reference agree within 1 %"""
     runs = {(p.case, p.method): p for p in marks.own() if p.ok and p.finding}
-    for rung in marks.rungs:
-        variant = rung.mesh, rung.precision, rung.kappa, rung.accuracy
-        p = runs.get((rung.case, rung.method)) if variant == AS_IT_COMES else None
-        error = p.error(rung.reference, "max") if p else None
-        if None in (error, rung.error):
+    for candidate in marks.candidates:
+        variant = candidate.mesh, candidate.precision, candidate.kappa, candidate.accuracy
+        p = runs.get((candidate.case, candidate.method)) if variant == AS_IT_COMES else None
+        error = p.error(candidate.reference, "max") if p else None
+        if None in (error, candidate.error):
             continue
-        if abs(rung.error - error) > SAME * error + FLOOR:
+        if abs(candidate.error - error) > SAME * error + FLOOR:
             yield (
-                f"{p.name}: error to the {rung.reference} {error:.4g}, but choose has "
-                f"{rung.error:.4g}"
+                f"{p.name}: error to the {candidate.reference} {error:.4g}, but choose has "
+                f"{candidate.error:.4g}"
             )
 
 
@@ -187,9 +187,11 @@ def require_plausible(points, measured, own, loaded):
     """
     same = not elsewhere(measured.facts_of(BENCH), own)
     table = {c.method: c.total for c in measured.counts if (c.form, c.part) == COUNTED}
-    rungs = tuple(rung for rung in measured.rungs if not elsewhere(rung.facts, own))
-    found = complaints(Marks(tuple(points), measured.steps if same else (), table, rungs, loaded))
+    candidates = tuple(c for c in measured.candidates if not elsewhere(c.facts, own))
+    found = complaints(
+        Marks(tuple(points), measured.steps if same else (), table, candidates, loaded)
+    )
     if found:
-        told = "; ".join(f"{mark} [{rule}]" for rule, mark in found[:3])
+        listed = "; ".join(f"{mark} [{rule}]" for rule, mark in found[:3])
         more = f"; and {len(found) - 3} more" if len(found) > 3 else ""
-        raise InputError(f"the chart has marks that cannot be true: {told}{more}")
+        raise InputError(f"the chart has marks that cannot be true: {listed}{more}")

@@ -19,9 +19,9 @@ MESHES = ("all", "own")
 PRECISIONS = ("all", "double")
 VERIFY = "sandglass verify"
 CHOOSE = "sandglass choose"
-# What a Point has as its Run or its Rung has it.
+# Fields that a Point shares with its Run or its Candidate.
 OF_RUN = "case method kappa precision ok ns mean_step step_remark simulated operations".split()
-OF_RUNG = "case method kappa accuracy precision mesh elements".split()
+OF_CANDIDATE = "case method kappa accuracy precision mesh elements".split()
 
 
 @dataclass
@@ -35,15 +35,15 @@ class Point:
     case: str
     method: str
     kappa: float | None
-    as_it_comes: bool  # not a point of a kappa curve
-    accuracy: float | None  # asked of an adaptive method
+    as_it_comes: bool  # default settings, not a point of a kappa curve
+    accuracy: float | None  # requested of an adaptive method
     precision: str
     mesh: str
     elements: int | None
     finding: str
     ok: bool
     golden: dict = field(default_factory=dict)
-    golden_is: str | None = None  # the method that stands for a golden that is not stored
+    golden_is: str | None = None  # the method that replaces a missing golden
     truth: dict = field(default_factory=dict)
     ns: float | None = None  # per element and step
     step: float | None = None
@@ -54,10 +54,10 @@ class Point:
     equilibrium: float | None = None
     evaluations: int | None = None
     operations: int | None = None
-    stable_step: float | None = None  # s, at rest
+    stable_step: float | None = None  # s, undeformed
     measured_by: str = VERIFY
     elsewhere: str = ""  # machine and revision of its times if they are not those of the page
-    group: str | None = None  # what its switch is called, if not by its method
+    group: str | None = None  # the name of its switch, if not the method
     judged: dict = field(default_factory=dict)  # (reference, tolerance) -> why it is not enough
 
     @property
@@ -82,12 +82,12 @@ class Point:
         if self.finding or not self.judged:
             return self.finding
         name = min(reference for reference, _ in self.judged)
-        told = {t: why for (reference, t), why in self.judged.items() if reference == name}
-        enough = [t for t, why in told.items() if not why]
+        reasons = {t: why for (reference, t), why in self.judged.items() if reference == name}
+        enough = [t for t, why in reasons.items() if not why]
         words = [f"enough for {exact_percent(min(enough))}"] if enough else []
-        beyond = max((t for t in told if told[t]), default=None)
+        beyond = max((t for t in reasons if reasons[t]), default=None)
         if beyond is not None:
-            words.append(f"not for {exact_percent(beyond)}: {told[beyond]}")
+            words.append(f"not for {exact_percent(beyond)}: {reasons[beyond]}")
         return ", ".join(words) + f" ({self.golden_is or name})"
 
     def as_record(self):
@@ -110,12 +110,12 @@ def make_points(runs, elements, measured, own):
         points[run.case, run.method, kappa, run.precision, OWN_MESH, None] = _of_run(
             run, elements.get(run.case)
         )
-    for rung in measured.rungs:
-        if rung.case in elements and rung.reference in REFERENCES:
-            key = rung.case, rung.method, rung.kappa, rung.precision, rung.mesh, rung.accuracy
-            point = points.setdefault(key, _of_rung(rung))
-            _add_rung(point, rung, own)
-            if rung.stands_in and rung.case not in with_golden:
+    for c in measured.candidates:
+        if c.case in elements and c.reference in REFERENCES:
+            key = c.case, c.method, c.kappa, c.precision, c.mesh, c.accuracy
+            point = points.setdefault(key, _of_candidate(c))
+            _add_candidate(point, c, own)
+            if c.stands_in and c.case not in with_golden:
                 point.golden_is = STAND_IN
     order = {case: i for i, case in enumerate(elements)}
     return sorted(points.values(), key=lambda point: order[point.case])
@@ -145,25 +145,25 @@ def _of_mesh(ns, elements):
     return None if ns is None or elements is None else 1e-9 * ns * elements
 
 
-def _of_rung(rung):
-    """The point of a rung that has no run; it is not ok until a rung brings an answer."""
-    same = {name: getattr(rung, name) for name in OF_RUNG}
-    return Point(**same, as_it_comes=rung.kappa is None, finding="", ok=False, measured_by="")
+def _of_candidate(candidate):
+    """The point of a candidate without a run; it is ok once a candidate has an answer."""
+    same = {name: getattr(candidate, name) for name in OF_CANDIDATE}
+    return Point(**same, as_it_comes=candidate.kappa is None, finding="", ok=False, measured_by="")
 
 
-def _add_rung(point, rung, own):
-    """Adds the data of a rung to a point. The cost measured first is kept."""
-    point.judged.setdefault((rung.reference, rung.tolerance), rung.reason)
-    if rung.error is not None:
-        getattr(point, rung.reference).setdefault("max", rung.error)
+def _add_candidate(point, candidate, own):
+    """Adds the data of a candidate to a point. The cost measured first is kept."""
+    point.judged.setdefault((candidate.reference, candidate.tolerance), candidate.reason)
+    if candidate.error is not None:
+        getattr(point, candidate.reference).setdefault("max", candidate.error)
         point.ok = point.ok or not point.finding
-    if rung.step is not None and point.step is None and point.simulated is None:
-        point.simulated = rung.simulated
-        if rung.step_size is not None:  # a condensed answer is no step
-            point.step, point.ns = rung.step, 1e9 * rung.step / rung.elements
-            point.checks = rung.checks
-            point.mean_step, point.step_remark = rung.step_size, rung.step_remark
-        point.measured_by, point.elsewhere = CHOOSE, elsewhere(rung.facts, own)
+    if candidate.step is not None and point.step is None and point.simulated is None:
+        point.simulated = candidate.simulated
+        if candidate.step_size is not None:  # a condensed answer is no step
+            point.step, point.ns = candidate.step, 1e9 * candidate.step / candidate.elements
+            point.checks = candidate.checks
+            point.mean_step, point.step_remark = candidate.step_size, candidate.step_remark
+        point.measured_by, point.elsewhere = CHOOSE, elsewhere(candidate.facts, own)
 
 
 def _errors(accuracy):

@@ -23,7 +23,7 @@ class CaseOrigin:
     case: str
     case_hash: str
     mesh_hash: str
-    references: tuple  # (kind, words on how it was computed, SHA-256 of its displacements)
+    references: tuple  # (kind, how it was computed, SHA-256 of its displacements)
 
 
 def program(verdicts):
@@ -60,9 +60,9 @@ def of_another_revision(source, verdicts):
 
 
 def elsewhere(facts, own):
-    """Machine and revision of a file in words where they are not the page's own, else nothing.
+    """Machine and revision of a file in words if they differ from the page's, else nothing.
 
-    facts: of the file. own: those of the verdicts. What neither states counts as the same.
+    facts: of the file. own: of the verdicts. Facts that neither states count as equal.
     """
     differs = any(
         facts.get(name) != own.get(name)

@@ -10,12 +10,12 @@ from sandglass_report.plates import MUTED, TEXT, Panel, Plate
 from sandglass_report.quantities import QUANTITIES
 
 SOUND = 0.05  # of the published value: a method that is farther off on its finest mesh has failed
-OTHER = "other"  # in place of the mesh, of values that name none
+OTHER = "other"  # in place of the mesh, for values without one
 
 
 @dataclass(frozen=True)
 class Benchmark:
-    """A published value of a family of cases that differ in their mesh, ours and that of others."""
+    """A published value of cases on several meshes, with our results and those of others."""
 
     title: str
     published: float
@@ -23,12 +23,12 @@ class Benchmark:
     meshes: tuple  # elements per side, in order; OTHER stands last
     rows: tuple  # (method, {mesh: Tip})
     programs: tuple  # (Program, {mesh: value})
-    failed: tuple  # (method, why) of those that are not sound on their finest mesh
+    failed: tuple  # (method, why) of methods that are not sound on their finest mesh
     plate: Plate
 
 
 def benchmarks(tips, palette):
-    """The Benchmarks of all published values that other programs are listed with.
+    """The Benchmarks of all published values for which other programs are listed.
 
     tips: of the verdicts. Variants must end with the number of elements per side.
     """
@@ -73,7 +73,7 @@ def _benchmark(title, methods, palette):
 
 
 def _why_failed(row):
-    """Why a method is not sound by its finest mesh; empty if it is."""
+    """Why a method is not sound on its finest mesh; empty if it is."""
     tip = row[max(row)]
     if not tip.ok or tip.to_published is None:
         return "no answer"
@@ -81,7 +81,7 @@ def _why_failed(row):
 
 
 def deviation(ratio):
-    """How far a value is from the published one, in words; ratio: the value over the published."""
+    """The deviation from a published value in words. ratio: the value over the published one."""
     if ratio < 0:
         return "of the wrong sign"
     if ratio > 2:
@@ -92,7 +92,7 @@ def deviation(ratio):
 
 
 def _answers(row):
-    """(mesh, Tip) of the runs that came to rest, coarsest first."""
+    """(mesh, Tip) of the runs that reached equilibrium, coarsest first."""
     return [(mesh, tip) for mesh, tip in sorted(row.items()) if tip.ok and tip.computed is not None]
 
 
@@ -147,7 +147,7 @@ def _over_meshes(name, one, methods, programs, palette):
 
 
 def _over_seconds(name, one, methods, palette):
-    """The distance from the published value over the seconds to rest."""
+    """The distance from the published value over the seconds to equilibrium."""
     lines = {
         method: [
             (tip.seconds, max(abs(tip.to_published - 1), style.FLOOR))
@@ -186,7 +186,7 @@ def _clipped(points, low, high):
 
 
 def _arrowheads(axes, points, low, high, colour):
-    """Arrowheads at the ends of an axis for points (x, y) beyond them, which would look real."""
+    """Arrowheads at the ends of an axis for points (x, y) beyond it; marks would look real."""
     for beyond, y, mark in (
         ([x for x, y in points if y > high], high, "^"),
         ([x for x, y in points if y < low], low, "v"),

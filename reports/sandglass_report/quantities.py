@@ -1,4 +1,4 @@
-"""What each number of the page is, in quantities.toml: axes, heads and their table follow.
+"""The numbers of the page, defined in quantities.toml: axes, heads and their table follow.
 
 A number has one name, unit and definition wherever it is shown, and one command that makes it.
 """
@@ -27,7 +27,7 @@ class Quantity:
     field: str
     unit: str = ""
     command: str = VERIFY
-    scale: float = 1.0  # from the stored value, in SI units or a fraction, to the unit
+    scale: float = 1.0  # from the stored value, in SI units or as a fraction, to the unit
 
     @property
     def title(self):

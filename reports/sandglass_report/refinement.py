@@ -1,4 +1,4 @@
-"""Error to the truth over time, on meshes refined where the answer needs it and on others."""
+"""Error to the truth over time, on adaptively refined meshes and on uniform ones."""
 
 from common.errors import InputError
 from common.files import read_json
@@ -9,7 +9,7 @@ from sandglass_report.plates import Panel, Plate
 REST = 1e-8  # the residual of cases
 KEYS = {"case": str, "way": str, "elements": int}
 KEYS |= dict.fromkeys(("seconds", "error_max", "error_rms"), NUMBER)
-LINES = {  # (way, whether at rest) -> what it is called, its colour and its line
+LINES = {  # (way, whether solved to REST) -> its name, colour and line
     ("uniform", True): ("all split, residual 1e-8", "#c8553d", "-"),
     ("uniform", False): ("all split, residual 1e-3", "#e3a78f", ":"),
     ("refined", False): ("refined", "#2f6fb2", "-"),
@@ -29,12 +29,12 @@ def read_refinement(path):
 
 
 def line_of(record):
-    """The line that a record is a point of, a key of LINES."""
+    """The line that a record belongs to, a key of LINES."""
     return record["way"], record["way"] == "uniform" and record.get("residual") == REST
 
 
 def fastest(records):
-    """Of the records on one mesh the fastest, in the order of their elements."""
+    """The fastest record on each mesh, in the order of their elements."""
     found = {}
     for record in sorted(records, key=lambda one: (one["elements"], one["seconds"])):
         found.setdefault(record["elements"], record)
@@ -68,11 +68,11 @@ def refinement_plate(records):
             way: min((p for p in points if p["way"] == way), key=lambda p: p["error_max"])
             for way in dict.fromkeys(p["way"] for p in points)
         }
-        told = ", ".join(
+        text = ", ".join(
             f"{way}: {100 * p['error_max']:.2g} % in {p['seconds']:.2g} s"
             for way, p in best.items()
         )
-        return Panel(f"refinement.{name}", name, f"{name}: {told}", draw, 420, 320)
+        return Panel(f"refinement.{name}", name, f"{name}: {text}", draw, 420, 320)
 
     names = dict.fromkeys(found["case"] for found in records)
     note = (

@@ -15,7 +15,7 @@ class Counted:
     paper: int  # of the hourglass control
     as_written: int | None  # of eq. 14 as the paper writes it
     control: int | None  # of the control in the kernel that runs
-    element: int | None  # of all the kernel does for an element
+    element: int | None  # of the whole kernel, for an element
 
 
 @dataclass(frozen=True)

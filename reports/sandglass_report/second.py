@@ -1,4 +1,4 @@
-"""Goldens and truths by a second program: in how many cases, to how many digits."""
+"""Goldens and truths checked by a second program: the number of cases and the distances."""
 
 from dataclasses import dataclass
 

@@ -54,7 +54,7 @@ def _panel(subject, palette, reference, figure, limits, costs):
         helpers.percent_scale(axes.yaxis, limits)
         axes.set_xlabel(COST.title)
         axes.figure.canvas.draw()  # the layout must be final before labels are pushed apart
-        labels = []  # x, y, colour, text, and the part of it that is kept if names do not fit
+        labels = []  # x, y, colour, text, and the part of it to keep if names do not fit
         for method in dict.fromkeys(run.method for run in timed):
             of_method = [run for run in timed if run.method == method]
             labels += _draw_method(axes, of_method, palette, reference, figure, limits)
@@ -126,10 +126,10 @@ def _name_missing(axes, subject, reference, untimed):
     untimed: the number of runs with a figure but without a time.
     """
     missing = [r.method for r in subject.runs if r.is_main and getattr(r, reference) is None]
-    told = ["failed: " + ", ".join(missing)] if missing else []
-    told += [f"{untimed} not timed"] if untimed else []
-    if told:
-        words = "; ".join(told)
+    remarks = ["failed: " + ", ".join(missing)] if missing else []
+    remarks += [f"{untimed} not timed"] if untimed else []
+    if remarks:
+        words = "; ".join(remarks)
         axes.text(
             1.0,
             1.02,

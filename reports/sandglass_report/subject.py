@@ -27,7 +27,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class MotionGolden:
-    """The golden of a case in motion: where it has moved farthest, and the file's attributes."""
+    """The golden of a motion at its largest displacement, and the file's attributes."""
 
     displacement: np.ndarray  # (n, 3), m, at `time`
     time: float  # s
@@ -50,7 +50,7 @@ class Subject:
     sets: dict = field(default_factory=dict)
     golden: Reference | None = None
     truth: Reference | None = None
-    surface_loads: bool = False  # pressures and supports, whose work is that of no method
+    surface_loads: bool = False  # pressures and supports, whose operations belong to no method
     motion: MotionGolden | None = None  # of a case in motion, which has no single golden field
     displacements: dict = field(default_factory=dict)  # (method, kappa or None) -> (n, 3), m
     hourglass: dict = field(default_factory=dict)  # the same -> energy density (m,), J/m^3
@@ -158,7 +158,7 @@ def _read_subject(verdicts, name, case_files, references, results):
 
 
 def _result_files(runs, folder):
-    """(run, path) of every run with a result file; a run that came to rest must have one."""
+    """(run, path) of every run with a result file; a run in equilibrium must have one."""
     found = []
     for run in runs:
         path = folder / run.file_name
@@ -272,14 +272,14 @@ def _require_same_runs(subject, files):
     for run, path in files:
         u = subject.displacements[run.method, None if run.is_main else run.kappa]
         for kind in REFERENCES:
-            reference, told = getattr(subject, kind), getattr(run, kind)
-            if reference is None or told is None:
+            reference, given = getattr(subject, kind), getattr(run, kind)
+            if reference is None or given is None:
                 continue
             found = accuracy(u, reference.displacement, subject.unit_of(reference), profile)
-            if abs(found.max - told.max) > AGREEMENT * max(1.0, told.max):
+            if abs(found.max - given.max) > AGREEMENT * max(1.0, given.max):
                 raise InputError(
                     f"{path}: its largest error against the {kind} is {found.max:.6g}, but the "
-                    f"verdicts say {told.max:.6g}: they come from different runs; run verify again"
+                    f"verdicts say {given.max:.6g}: they come from different runs; run verify again"
                 )
 
 

@@ -1,4 +1,4 @@
-"""Results of other programs, and those that other people submitted: the entries of results/."""
+"""The entries of results/: those of other programs, and those that other people submitted."""
 
 import math
 import re
@@ -18,8 +18,8 @@ AS_GOOD = 1.05
 class Nearest:
     """The entry of Sandglass to compare with, from the same machine.
 
-    as_good: whether its error is at most that of the other. step, simulated, rest: how many times
-    as long the other takes for a step, a simulated second, and to rest; None if unknown.
+    as_good: whether its error is at most the other's. step, simulated, rest: ratios of the other's
+    times for a step, a simulated second and equilibrium to its own; None if unknown.
     """
 
     element: str
@@ -48,7 +48,7 @@ class Nearest:
 
 @dataclass(frozen=True)
 class Submission:
-    """An entry, where it is, and what of ours is nearest; None for ours."""
+    """An entry, its path, and the nearest entry of ours; None for ours."""
 
     name: str
     entry: dict
@@ -66,7 +66,7 @@ class Submission:
 
     @property
     def build(self):
-        """The first words of how it was built."""
+        """The first words of its build flags."""
         return re.split("[,;]", self.entry["build"])[0]
 
     def error(self, reference="golden", figure="max"):
@@ -78,13 +78,13 @@ class Submission:
         return self.entry.get(key)
 
     def finding(self):
-        """What the chart says of it."""
+        """Its finding in the chart."""
         if self.ours:
             return "timed beside other programs"
         return self.nearest.in_words() if self.nearest else "nothing of ours to compare with"
 
     def elsewhere(self, own):
-        """Machine and revision of its times where they are not those of the page, else nothing.
+        """Machine and revision of its times if they differ from the page's, else nothing.
 
         own: machine and revision of the page, as in the verdicts. Another program has been timed
         beside the entry of Sandglass that is nearest to it, whose revision counts.
@@ -128,7 +128,7 @@ def read_submissions(folder):
 
 
 def _nearest(entry, ours):
-    """The Nearest of an entry: the cheapest of ours that is as good, else the most accurate one."""
+    """The Nearest of an entry: our cheapest entry that is as good, else our most accurate one."""
 
     def error(one):
         return max(one["errors"].get("golden", {}).get("max", math.inf), style.FLOOR)

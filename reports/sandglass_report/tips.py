@@ -22,7 +22,7 @@ class TipTable:
 def tip_tables(tips):
     """The tables of all families, in the order of the file; relative to the truth if available.
 
-    Families of which values of other programs are known have tables of their own (published.py).
+    Families with known values of other programs have their own tables (published.py).
     """
     tips = [tip for tip in tips if not tip.programs]
     tables = []

@@ -24,10 +24,10 @@ class Run:
     golden: Accuracy | None
     truth: Accuracy | None
     operations: int  # per element and step
-    stable_step: float  # s, at rest
+    stable_step: float  # s, undeformed
     residual: float
     hourglass_energy_ratio: float  # of the strain energy
-    step_remark: str  # about steps of single states; mostly empty
+    step_remark: str  # about steps of single states; usually empty
     ns: float | None = key("ns_per_element_step")  # None: not measured, or there is no step
     ns_low: float | None = key("ns_lower_quartile")
     ns_high: float | None = key("ns_upper_quartile")
@@ -41,7 +41,7 @@ class Run:
 
     @property
     def ok(self):
-        """Whether the run came to rest."""
+        """Whether the run finished."""
         return self.status == "ok"
 
     @property
@@ -65,7 +65,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Program:
-    """What another program finds: a value for each number of elements per side, or one alone."""
+    """Another program's values: one for each number of elements per side, or a single one."""
 
     program: str
     elements: list
@@ -161,7 +161,7 @@ def _tips(where, record):
 
 
 def _seconds(where, record):
-    """What a run took: its search for equilibrium or, of a case in motion, its motion."""
+    """The time of a run: of its search for equilibrium, or of its motion."""
     known = (
         entry(where, record, name, NUMBER, none_allowed=True)
         for name in ("equilibrium_seconds", "motion_seconds")

@@ -17,7 +17,7 @@ STOPS = 32  # of a colour scale; the page draws the nearest one
 LEAST_ERROR = 1e-5  # fractions; the logarithmic scale of errors begins here
 GOLDEN = "golden"
 
-# The colourings of faces: words, unit, scale and colour map (readable for colour-blind readers).
+# The colourings of faces: words, unit, scale and colour map (distinguishable when colour-blind).
 COLOURS = {
     "error": ("distance from the golden", "% of the imposed displacement", "log", "viridis"),
     "volume": ("volume ratio, det F", "deformed over undeformed", "linear", "PuOr"),
@@ -45,12 +45,12 @@ def _case(subject):
     """Surface, answers and colour limits of a case."""
     faces, owners = _faces(subject.cells)
     nodes, local = np.unique(faces, return_inverse=True)
-    at_rest = volumes(subject.points, subject.cells)
+    undeformed = volumes(subject.points, subject.cells)
     main = {m: u for (m, kappa), u in subject.displacements.items() if kappa is None}
     answers = {m: u for m, u in main.items() if np.isfinite(u).all()}
     if subject.golden is not None:
         answers = {GOLDEN: subject.golden.displacement} | answers
-    fields = {name: _fields(subject, name, u, at_rest) for name, u in answers.items()}
+    fields = {name: _fields(subject, name, u, undeformed) for name, u in answers.items()}
     limits = _limits(fields)
     view = view_of(subject.points)
     return {
@@ -83,9 +83,9 @@ def _faces(cells):
     return faces, np.array([element[tuple(face)] for face in np.sort(faces, axis=1).tolist()])
 
 
-def _fields(subject, name, u, at_rest):
-    """Values by name: error at nodes (fractions), the rest of elements."""
-    found = {"volume": volumes(subject.points + u, subject.cells) / at_rest}
+def _fields(subject, name, u, undeformed):
+    """Values by name: errors of nodes (fractions), other values of elements."""
+    found = {"volume": volumes(subject.points + u, subject.cells) / undeformed}
     if subject.golden is not None:
         golden = subject.golden.displacement
         found["error"] = relative_distances(u, golden, subject.unit_of(subject.golden))

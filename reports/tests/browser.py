@@ -58,10 +58,10 @@ class Browser:
         """The identifier of the page load that the window shows."""
         return self._call("Page.getFrameTree")["frameTree"]["frame"]["loaderId"]
 
-    def _wait(self, comes_true, told):
+    def _wait(self, comes_true, message):
         end = time.monotonic() + PATIENCE
         while not comes_true():
-            assert time.monotonic() < end, f"{told}; console: {self.complaints}"
+            assert time.monotonic() < end, f"{message}; console: {self.complaints}"
             time.sleep(0.05)
 
     def __enter__(self):
@@ -118,12 +118,12 @@ class Browser:
         return json.loads(message)
 
     def _note(self, event):
-        told = event.get("params", {})
+        data = event.get("params", {})
         if event["method"] == "Runtime.exceptionThrown":
-            self.complaints.append(told["exceptionDetails"])
-        elif event["method"] == "Log.entryAdded" and told["entry"]["level"] in ("error", "warning"):
-            self.complaints.append(told["entry"])
-        elif event["method"] == "Runtime.consoleAPICalled" and told["type"] in ("error", "warning"):
-            self.complaints.append(told["args"])
+            self.complaints.append(data["exceptionDetails"])
+        elif event["method"] == "Log.entryAdded" and data["entry"]["level"] in ("error", "warning"):
+            self.complaints.append(data["entry"])
+        elif event["method"] == "Runtime.consoleAPICalled" and data["type"] in ("error", "warning"):
+            self.complaints.append(data["args"])
         elif event["method"] == "Network.requestWillBeSent":
-            self.requests.append(told["request"]["url"])
+            self.requests.append(data["request"]["url"])

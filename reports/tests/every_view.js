@@ -17,15 +17,15 @@
       control.dispatchEvent(new Event("input", { bubbles: true }));
     }
     for (let i = 0; i < 500 && !chart.dataset.drawn; i++) await new Promise((done) => setTimeout(done, 5));
-    const told = names.map((name) => get(name).value).join(" ");
+    const shown = names.map((name) => get(name).value).join(" ");
     const [axis, budget] = [plot.layout.xaxis, get("budget")];
-    if (!chart.dataset.drawn) faults.push(`${told}: was not drawn`);
-    if (axis.tickvals.length > 60 || !axis.range.every(Number.isFinite)) faults.push(`${told}: axis ${axis.range}`);
-    if (![budget.min, budget.max, budget.value].every((v) => Math.abs(v) < 9)) faults.push(`${told}: budget ${budget.max}`);
+    if (!chart.dataset.drawn) faults.push(`${shown}: was not drawn`);
+    if (axis.tickvals.length > 60 || !axis.range.every(Number.isFinite)) faults.push(`${shown}: axis ${axis.range}`);
+    if (![budget.min, budget.max, budget.value].every((v) => Math.abs(v) < 9)) faults.push(`${shown}: budget ${budget.max}`);
     for (const name of ["reference", "figure", "cost"]) {
       const options = [...get(name).options];
-      if (options.some((o) => o.disabled !== Boolean(o.title))) faults.push(`${told}: ${name} without a reason`);
-      if (options.some((o) => !o.disabled) && get(name).selectedOptions[0].disabled) faults.push(`${told}: ${name} disabled`);
+      if (options.some((o) => o.disabled !== Boolean(o.title))) faults.push(`${shown}: ${name} without a reason`);
+      if (options.some((o) => !o.disabled) && get(name).selectedOptions[0].disabled) faults.push(`${shown}: ${name} disabled`);
     }
   }
   return { views: views.length, faults: [...new Set(faults)].slice(0, 5) };

@@ -90,7 +90,7 @@ class DataSet:
 
     @staticmethod
     def tip(method, ratio, variant="short", status="ok", to_truth=None, programs=()):
-        """A record of a run with a published value, -2, of which other programs may be known."""
+        """A record of a run with a published value, -2, perhaps with values of other programs."""
         value = {"source": "a book", "ratio": ratio, "ratio_to_truth": to_truth, "published": -2.0}
         value |= {"set": "tip", "component": "z", "programs": list(programs)}
         value["computed"] = None if ratio is None else -2.0 * ratio
@@ -110,21 +110,21 @@ class DataSet:
         path.write_text(json.dumps(document), encoding="utf-8")
 
     @staticmethod
-    def rung(method, seconds, error, **changed):
+    def row(method, seconds, error, **changed):
         """A row of `sandglass choose --all --json` on the case's own mesh, in double."""
         own = {"rung": f"{method} {changed}", "method": method, "seconds": seconds, "error": error}
         own["seconds_per_simulated_second"] = 1e3 * seconds
-        return RECORDS["rung"] | own | changed
+        return RECORDS["row"] | own | changed
 
     @staticmethod
-    def ladder(rungs, reference="golden", tolerance=0.01, case="column"):
+    def choices(rows, reference="golden", tolerance=0.01, case="column"):
         """The document of `sandglass choose --all --json`."""
         return {
             "revision": "abc",
             "case": case,
             "tolerance": tolerance,
             "reference": {"name": reference},
-            "rungs": rungs,
+            "rungs": rows,
         }
 
     @staticmethod
@@ -185,7 +185,7 @@ class DataSet:
 
 
 class Axes:
-    """Notes what is plotted."""
+    """Records the plotted data."""
 
     def __init__(self):
         self.lines = []

@@ -62,12 +62,12 @@ def test_figures_are_the_solvers_own(tmp_path):
     for run in subject.runs:
         u = subject.displacements[run.method, None if run.is_main else run.kappa]
         for kind in ("golden", "truth"):
-            told, reference = getattr(run, kind), getattr(subject, kind)
-            if told is None:
+            stored, reference = getattr(run, kind), getattr(subject, kind)
+            if stored is None:
                 continue
             nodes = subject.sets[subject.profile_set]
             found = accuracy(u, reference.displacement, subject.unit, nodes)
             for name in ("max", "profile", "rms"):
-                assert abs(getattr(found, name) - getattr(told, name)) < 1e-12, (run.label, name)
+                assert abs(getattr(found, name) - getattr(stored, name)) < 1e-12, (run.label, name)
                 compared += 1
     assert compared > 0

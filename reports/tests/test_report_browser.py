@@ -17,12 +17,12 @@ DRAWN = "document.querySelector('#chart').dataset.drawn"
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """The page of the data set with a ladder and a truth."""
+    """The page of the data set with candidates of `choose` and a truth."""
     data = DataSet(tmp_path_factory.mktemp("browser"))
-    rungs = [data.rung("tl-perturbation", 2e-6, 0.004, precision="float")]
-    rungs += [data.rung("tl-perturbation", 1e-6, 0.03, mesh="elements = [1]", elements=1)]
-    rungs += [data.rung("tl-perturbation", 4e-6, 0.002)]
-    data.write("curves/a.json", data.ladder(rungs))
+    rows = [data.row("tl-perturbation", 2e-6, 0.004, precision="float")]
+    rows += [data.row("tl-perturbation", 1e-6, 0.03, mesh="elements = [1]", elements=1)]
+    rows += [data.row("tl-perturbation", 4e-6, 0.002)]
+    data.write("curves/a.json", data.choices(rows))
     for record in data.records[1:3]:
         record["truth"] = record["golden"] | {"max_relative_error": 0.08}
     data.write_reference("truth", data.answer * [1.0, 1.0, 1.1])
@@ -65,7 +65,7 @@ def marks(browser):
     )
 
 
-def test_everything_is_drawn_without_a_word_on_the_console(browser):
+def test_everything_is_drawn_without_messages_on_the_console(browser):
     assert browser.run(DRAWN) == "column|golden|max|simulated|all|all"
     assert browser.run("document.querySelectorAll('#chart .scatterlayer .point').length") == 4
     assert browser.run("document.querySelector('#viewer').dataset.drawn") == "column"
@@ -73,7 +73,7 @@ def test_everything_is_drawn_without_a_word_on_the_console(browser):
     assert browser.complaints == []
 
 
-def test_nothing_is_asked_for_beyond_the_page(browser):
+def test_the_page_requests_nothing(browser):
     assert [url for url in browser.requests if not url.startswith(("file:", "data:"))] == []
     assert len([url for url in browser.requests if url.startswith("file:")]) == 1
 
@@ -154,10 +154,10 @@ def point_at(browser, error):
         for place in (x - 5, x + 1):
             browser._call("Input.dispatchMouseEvent", type="mouseMoved", x=place, y=y)
             browser.run("new Promise((done) => setTimeout(done, 100))")
-    return browser.run(label), browser.run("document.querySelector('#chart .told').innerText")
+    return browser.run(label), browser.run("document.querySelector('#chart .details').innerText")
 
 
-def test_a_mark_tells_everything_beside_the_chart(browser):
+def test_all_details_of_a_mark_appear_beside_the_chart(browser):
     choose(browser, "own", True)
     choose(browser, "double", True)
     label, text = point_at(browser, 0.002)
@@ -255,7 +255,7 @@ def test_without_scripts_the_static_pictures_show(page):
             node = plain._call("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
             try:
                 return plain._call("DOM.getBoxModel", nodeId=node)["model"]["height"]
-            except AssertionError:  # what is not displayed has no box
+            except AssertionError:  # hidden elements have no box
                 return 0
 
         assert height("details.static svg") > 100
@@ -268,14 +268,14 @@ def test_a_method_that_stands_for_the_golden_is_named(tmp_path, browser):
     for record in data.records:
         record |= {"golden": None, "finding": None}
     data.write_verdicts()
-    rungs = [data.rung("tl-perturbation", 2e-6, 0.004), data.rung("t4", 1e-6, 0.03)]
-    data.write("curves/a.json", data.ladder(rungs, "tl-mean-dilatation"))
+    rows = [data.row("tl-perturbation", 2e-6, 0.004), data.row("t4", 1e-6, 0.03)]
+    data.write("curves/a.json", data.choices(rows, "tl-mean-dilatation"))
     data.make()
     with Browser() as other:
         other.open(data.page)
         other.until(DRAWN)
-        told = "document.querySelector('#chart [name=reference]').options[0].textContent"
-        assert other.run(told) == "tl-mean-dilatation (no golden)"
+        text = "document.querySelector('#chart [name=reference]').options[0].textContent"
+        assert other.run(text) == "tl-mean-dilatation (no golden)"
         axis = "document.querySelector('#chart .plot').layout.yaxis.title.text"
         assert other.run(axis) == "largest error over all nodes, to tl-mean-dilatation"
         assert browser.run(axis).endswith(", to the golden")
@@ -292,7 +292,7 @@ def test_a_link_opens_what_is_folded_below_its_heading(page):
 
 
 def test_the_chart_begins_on_the_first_screen(page):
-    """What is asked stands above it; the rest of the menu is folded, also after a click."""
+    """The question stands above it; the rest of the menu is folded, also after a click."""
     with Browser(width=1280, height=800) as screen:
         screen.open(page)
         screen.until(DRAWN)
@@ -315,7 +315,7 @@ def test_texts_that_scripts_make_keep_numbers_and_percent_signs_together(browser
 
 
 def test_on_paper_there_is_no_menu_and_nothing_is_cut(page):
-    """A4 less its margins is 703 px wide; what the reader opened stays open, and closes after."""
+    """A4 within its margins is 703 px wide; parts that printing opens are closed afterwards."""
     with Browser(width=703) as paper:
         paper.open(page)
         paper.until(DRAWN)

@@ -48,7 +48,7 @@ def tree(data):
     return data
 
 
-def test_a_claim_has_its_limit_and_the_mistakes_its_tests_noticed(tree):
+def test_a_claim_has_its_limit_and_the_mistakes_its_tests_detected(tree):
     (claim,) = tree.read().claims
     assert claim.noticed == 1
     assert claim.limits[0].found == 0.002
@@ -66,7 +66,7 @@ def test_mutants_are_counted_and_belong_to_the_file_of_the_test(tree):
     assert evidence.made.startswith("Made by")
 
 
-def test_those_that_no_test_noticed_come_first(tree):
+def test_undetected_mutants_come_first(tree):
     verdicts = [m.verdict for m in tree.read().worst_first()]
     assert verdicts == ["survived", "not run", "killed", "killed"]
 
@@ -87,7 +87,7 @@ def test_both_files_may_be_absent(tree):
         ("[[claim]]", "[[claim", "claims.toml"),
     ],
 )
-def test_claims_that_rest_on_nothing_are_refused(tree, old, new, words):
+def test_claims_without_evidence_are_refused(tree, old, new, words):
     tree.write_claims(CLAIM.replace(old, new))
     with pytest.raises(InputError, match=words):
         tree.read()
@@ -104,7 +104,7 @@ def test_a_table_of_another_shape_is_refused(tree):
         tree.read()
 
 
-def test_the_claims_of_this_tree_rest_on_tests_limits_and_sections_that_are_there():
+def test_tests_limits_and_sections_of_this_trees_claims_exist():
     """Limits are those that the case files expect."""
     import tomllib
 

@@ -1,4 +1,4 @@
-"""Captions say what the runs found, and pictures show whose answer the caption names."""
+"""Captions state the runs' findings, and pictures show the answers that captions name."""
 
 import re
 
@@ -15,13 +15,13 @@ SUCCESS = VERBS["good"]
 
 
 def found(data):
-    """What the card of the case says was found."""
+    """The finding on the card of the case."""
     card = re.search(r"Found:</span>(.*?)</p>", section(data.make(), "cases"), re.S)[1]
     return card.replace("\u00a0", " ")
 
 
 @pytest.mark.parametrize("finding", [word for word in VERBS if word != "not supported"])
-def test_a_caption_claims_what_the_verdict_says(data, finding):
+def test_a_caption_agrees_with_the_verdict(data, finding):
     data.records[1] = data.run("tl-perturbation", 0.0832, kappa=0.0065, auto=True)
     data.records[1]["finding"] = finding
     data.records = data.records[:2]
@@ -63,7 +63,7 @@ def test_a_caption_counts_findings_and_limits(data):
     assert "1 of the case’s 2 limits BROKEN." in words
 
 
-def test_a_golden_far_from_the_truth_is_said(data):
+def test_a_golden_far_from_the_truth_is_reported(data):
     assert "from the truth" not in found(data)
     data.write_reference("truth", data.answer * [1.0, 1.0, 1.5], element="P2-P1")
     assert "The golden is 40 % from the truth" in found(data)  # 0.5 * 0.4 m over 0.5 m
@@ -86,7 +86,7 @@ def picture(data):
     return re.search(r'class="(?:shown|quiet)">((?:deformed|No ).*?)</p>', cases)[1]
 
 
-def test_a_picture_says_whose_answer_it_shows(data):
+def test_a_picture_names_the_source_of_its_answer(data):
     assert picture(data) == "deformed: the golden"
     without_golden(data)
     assert picture(data) == "deformed: tl-perturbation, as no golden is stored"
@@ -169,7 +169,7 @@ def test_a_distance_from_a_published_value_is_no_share_of_it(ratio, words):
 
 
 def test_curves_over_the_truth_have_nothing_else_on_them(data):
-    """A value without a truth is not drawn by what a book says."""
+    """A value without a truth is not drawn with a published value instead."""
     for elements, to_truth in (("1", None), ("2", 0.7)):
         record = data.tip("tl-full", 0.3, to_truth=to_truth)
         data.published.append(record | {"variants": [elements, "nu0.25"]})
@@ -178,7 +178,7 @@ def test_curves_over_the_truth_have_nothing_else_on_them(data):
     assert "tl-full: 0.700 at 0.25" in bending and "tl-full: 0.300" not in bending
 
 
-def test_what_is_asked_comes_before_the_chart_and_is_defined_once(data):
+def test_requirements_come_before_the_chart_and_are_defined_once(data):
     page = data.make()
     assert page.index("What hourglassing is") < page.index('id="chart-head"')
     for word in ("golden", "truth", "kappa"):
@@ -189,7 +189,7 @@ def test_what_is_asked_comes_before_the_chart_and_is_defined_once(data):
 @pytest.mark.parametrize(
     ("elements", "seconds", "words"), [(2200, 0.11, "20,000"), (2200, 2.1, "1,000"), (9, 1.0, "9")]
 )
-def test_elements_in_real_time_take_a_second_of_a_second(elements, seconds, words):
+def test_elements_in_real_time_take_a_second_per_simulated_second(elements, seconds, words):
     from sandglass_report.headline import in_real_time
 
     assert in_real_time(elements, seconds) == words

@@ -1,4 +1,4 @@
-"""How the cost grows: what the plate draws; broken files are rejected."""
+"""The growth of cost: contents of the plate; broken files are rejected."""
 
 import json
 

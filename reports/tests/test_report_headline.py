@@ -1,4 +1,4 @@
-"""The README's figure: made from stored records, which are those of the program as it is."""
+"""The README's figure is made from stored records, which match the current program."""
 
 import copy
 import dataclasses
@@ -15,12 +15,12 @@ from sandglass_report import headline
 from sandglass_report.headline import CASE, METHODS, NAME, caption, figure
 from sandglass_report.style import FLOOR
 
-# Runs are at rest to 1e-8 of the forces on any machine; a tenth of the last digit that is shown.
+# Residuals are below 1e-8 of the forces on any machine; a tenth of the last digit shown.
 ERRORS_AGREE = 5e-3
 # On all machines so far the time of a method over that of tl-perturbation was within 1.4 times the
 # ratio of their operations.
 COSTS_AGREE = 1.5
-ROUNDED = 0.01  # what the printed digits of a time may hide
+ROUNDED = 0.01  # rounding of the printed times
 OWN = {"processor": "CPU", "version": "1", "revision": "abc", "compiler": "none"}
 FACTS = {  # golden, truth, ns and operations, about as measured
     "linear": (0.317, 0.259, 20.0, 487),
@@ -32,7 +32,7 @@ FACTS = {  # golden, truth, ns and operations, about as measured
 
 
 def of_mesh(ns):
-    """What belongs to a time per element and step on the case's mesh."""
+    """The costs that follow from a time per element and step on the case's mesh."""
     costs = {name: 2.2 * value for name, value in timed(ns, STEP).items()}
     return costs | {"ns": ns, "mean_step": STEP, "case": CASE, "elements": 2200}
 
@@ -71,7 +71,7 @@ def test_the_text_around_the_figure_has_its_numbers(name):
 
 
 def test_the_stored_records_are_those_of_the_program(tmp_path):
-    """Each method is run and scored anew; what it costs is checked by its operations."""
+    """Each method is run and scored again; its cost is checked by its operations."""
     document = json.loads((ROOT / make_headline.FOLDER / f"{NAME}.json").read_text())
     program, errors = binary(), {}
     for method in METHODS:
@@ -99,7 +99,7 @@ def test_the_stored_records_are_those_of_the_program(tmp_path):
         assert record["seconds_per_simulated_second"] == second, method
 
 
-def test_what_the_caption_says_of_methods_is_so():
+def test_the_captions_claims_about_methods_are_true():
     document = json.loads((ROOT / make_headline.FOLDER / f"{NAME}.json").read_text())
     at = {record["method"]: record for record in document["methods"]}
     sound = at["tl-mean-dilatation"]["truth"]

@@ -17,7 +17,7 @@ def refused(data, capsys, *words):
 
 
 @pytest.mark.parametrize("text", ["{", "[]", "{}", '{"records": [], "limits": []}', "\xff"])
-def test_verdicts_that_are_none(data, capsys, text):
+def test_a_file_without_verdicts(data, capsys, text):
     (data.folder / "verdicts.json").write_text(text, encoding="latin-1")
     refused(data, capsys, "verdicts.json")
 

@@ -1,4 +1,4 @@
-"""Files of other commands: what is read, what may be absent, and what is rejected."""
+"""Files of other commands: those that are read, may be absent, or are rejected."""
 
 import pytest
 
@@ -14,9 +14,9 @@ def read(data):
     return read_measured(*(data.folder / name for name in names))
 
 
-def test_what_is_absent_is_named_with_its_command(data):
+def test_missing_files_are_named_with_their_commands(data):
     found = read(data)
-    assert not (found.rungs or found.steps or found.counts or found.maps)
+    assert not (found.candidates or found.steps or found.counts or found.maps)
     assert all(source.facts is None for source in found.sources)
     commands = " ".join(source.command for source in found.sources)
     for word in ("bench --threads", "flops", "reports/curves", "stability CASE"):
@@ -66,7 +66,7 @@ def a_map(case, revision="abc"):
     return {"case": case, "limit": 0.01, "revision": revision, "maps": []}
 
 
-def test_kept_maps_stand_in_for_cases_that_were_not_swept_anew(data):
+def test_kept_maps_stand_in_for_missing_ones(data):
     data.write("maps/column.json", a_map("column", "new"))
     data.write("kept-maps/column.json", a_map("column", "old"))
     data.write("kept-maps/twist.json", a_map("twist", "old"))
@@ -86,11 +86,11 @@ def test_kept_maps_stand_in_for_cases_that_were_not_swept_anew(data):
         ("kept-maps/a.json", {"case": "c"}, ("limit", "missing")),
     ],
 )
-def test_what_is_broken_is_refused_with_file_and_key(data, capsys, name, document, words):
+def test_broken_data_are_refused_with_file_and_key(data, capsys, name, document, words):
     data.write(name, document)
     assert main(data.arguments) == 2
-    told = capsys.readouterr().err
-    assert told.startswith("error: ") and told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert message.startswith("error: ") and message.count("\n") == 1
     for word in (name, *words):
-        assert word in told
+        assert word in message
     assert not data.page.exists()

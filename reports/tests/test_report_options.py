@@ -56,7 +56,7 @@ def disabled(browser):
     return browser.run(f"{options}.map((o) => o.textContent)")
 
 
-def test_options_without_data_are_disabled_and_a_wish_returns_with_the_data(tmp_path):
+def test_options_without_data_are_disabled_and_a_choice_returns_with_the_data(tmp_path):
     page = several_cases(tmp_path)
     reference = "document.querySelector('#chart [name=reference]').value"
     with Browser() as other:

@@ -1,4 +1,4 @@
-"""The whole report from a tiny data set: what the page contains, and what not."""
+"""The whole report from a tiny data set: contents of the page."""
 
 import re
 from html.parser import HTMLParser
@@ -76,7 +76,7 @@ def test_a_failed_run_is_shown_with_its_reason(page):
     assert "runs with default settings on 1 case, 1 fails" in page
 
 
-def test_a_missing_truth_is_said(page):
+def test_a_missing_truth_is_reported(page):
     assert "no truth is stored for this case yet" in page
 
 
@@ -135,7 +135,7 @@ def test_a_ninth_and_further_method_gets_a_pair_of_its_own():
     assert len(pairs) == 20
 
 
-def test_labels_keep_apart():
+def test_labels_do_not_overlap():
     from sandglass_report.axes import spread
 
     moved = spread([5.0, 5.0, 5.5, 40.0], gap=10.0, low=0.0, high=100.0)

@@ -1,6 +1,6 @@
-"""Records whose meaning is another one than their name's: the page is not made, and says why.
+"""Implausible records: no page is made, and the message gives the reason.
 
-Each test corrupts a sound document as a program with a plausible mistake would write it.
+Each test corrupts a sound document in the way that a likely mistake in a program would.
 """
 
 import dataclasses
@@ -53,7 +53,7 @@ def timed(ns, mean_step):
 
 
 def sound(**changed):
-    """Marks that can be true; changed: of the points of single methods, with _ for -."""
+    """Plausible marks. changed: changes of single methods' points, with _ for -."""
     points = {method: point(method, *facts) for method, facts in METHODS.items()}
     for name, values in changed.items():
         method = name.replace("_", "-")
@@ -62,7 +62,7 @@ def sound(**changed):
 
 
 def steps_of_bench(factor=1.0):
-    """Records of bench that agree with the points, or are longer by a factor."""
+    """Records of bench that agree with the points, or whose times are longer by a factor."""
     return tuple(
         Step("ball", ELEMENTS, m, "double", factor * ns, STEP, 1.0)
         for m, (ns, _) in METHODS.items()
@@ -70,17 +70,17 @@ def steps_of_bench(factor=1.0):
 
 
 def broken(points, steps=(), table=TABLE):
-    """The rules that marks break, and what is said of them."""
+    """The rules that marks break, and the complaints."""
     found = complaints(Marks(tuple(points), steps, table))
     return {rule for rule in RULES if rule.__doc__ in {words for words, _ in found}}, found
 
 
-def test_what_was_measured_can_be_true():
+def test_measured_marks_are_plausible():
     assert broken(sound(), steps_of_bench()) == (set(), [])
 
 
 def test_the_time_of_another_loop_is_noticed():
-    """What the page showed for a year: an evaluation of the search for a step."""
+    """A past mistake: the time of an evaluation of the static search in place of a step's."""
     points = [dataclasses.replace(p, **timed(2400.0 + p.operations / 40, STEP)) for p in sound()]
     rules, found = broken(points, steps_of_bench())
     assert {bench_agrees, updated_form_costs_more, times_follow_operations} <= rules
@@ -94,7 +94,7 @@ def test_a_time_that_bench_does_not_have_is_noticed(factor):
 
 
 def test_the_step_of_another_state_is_noticed():
-    """The step of the most deformed state in place of the mean of the motion."""
+    """The step of the most deformed state instead of the motion's mean."""
     strained = sound(tl_perturbation={"mean_step": STEP / 15})
     assert broken(strained)[0] == {seconds_are_those_of_the_step}
     inverted = sound(tl_perturbation=timed(23.0, 1e-17))
@@ -104,7 +104,7 @@ def test_the_step_of_another_state_is_noticed():
 
 
 def test_a_stiff_body_may_have_short_steps():
-    """Steel in elements of a millimetre; its steps at rest say so."""
+    """Steel in elements of a millimetre; its undeformed steps are short."""
     stiff = {"stable_step": 2e-7} | timed(23.0, 1.5e-7)
     slow = stiff | {"simulated": 3e6, "step": 3e6 * 1.5e-7, "checks": 0.0}
     for changed in (stiff, slow):
@@ -131,13 +131,13 @@ def test_an_endless_second_is_noticed_without_a_step():
 
 @pytest.mark.parametrize("unit", [1e3, 1e-3, 1e9])
 def test_the_unit_of_another_axis_is_noticed(unit):
-    """Milliseconds for seconds, or the reverse, of one number alone."""
+    """Milliseconds instead of seconds, or the reverse, in a single number."""
     for name in ("mean_step", "simulated", "step"):
         points = [dataclasses.replace(p, **{name: unit * getattr(p, name)}) for p in sound()]
         assert seconds_are_those_of_the_step in broken(points)[0]
 
 
-def test_the_updated_form_cannot_cost_what_the_total_one_does():
+def test_the_updated_form_must_cost_more_than_the_total_one():
     points = sound(ul_perturbation=timed(33.0, STEP))
     assert broken(points)[0] == {updated_form_costs_more}
     assert broken(sound(ul_perturbation=timed(36.0, STEP)))[0] == set()
@@ -150,12 +150,12 @@ def test_times_far_from_the_operations_are_noticed(ns, rules):
 
 
 def test_operations_saved_on_equal_elements_are_not_held_against_the_others():
-    """On a column of equal bricks tl-perturbation counts 343, and takes its usual time."""
+    """On a column of equal boxes tl-perturbation counts 343, but takes its usual time."""
     assert broken(sound(tl_perturbation={"operations": 343}))[0] == set()
 
 
 def test_surface_loads_are_the_work_of_no_method():
-    """On a beam under pressure every step takes 48 ns more; the same on a ball is a fault."""
+    """On a beam under pressure steps take 48 ns more; without surface loads that is a fault."""
     slow = {m.replace("-", "_"): timed(ns + 48.0, STEP) for m, (ns, _) in METHODS.items()}
     points = sound(**slow)
     assert broken(points)[0] >= {times_follow_operations}
@@ -171,36 +171,36 @@ def test_the_adaptive_method_may_have_one_to_eight_points(ns, true):
     assert found == (set() if true else {times_follow_operations})
 
 
-def test_other_meshes_numbers_and_machines_are_compared_with_no_bench():
+def test_other_meshes_precisions_and_machines_are_not_compared_with_bench():
     variants = ({"mesh": "coarser"}, {"precision": "float"}, {"elsewhere": "another machine"})
     for changed in variants:
         assert broken([point("tl-none", 900.0, 430, **changed)], steps_of_bench())[0] == set()
 
 
 def test_an_error_to_another_reference_is_noticed(data, capsys):
-    """Golden and truth exchanged in one of two programs."""
+    """Golden and truth are exchanged in one of the two commands."""
     measured_in(data)
     for record in data.records:
         record["truth"] = record["golden"] | {"max_relative_error": 0.05}
     data.write_verdicts()
-    rungs = [data.rung("tl-full", 1e-6, 0.05, precision="float")]
-    rungs += [data.rung("tl-full", 1e-6, 0.05, mesh="coarser"), data.rung("tl-full", 1e-6, None)]
-    data.write("curves/a.json", data.ladder([*rungs, data.rung("tl-full", 1e-6, 0.002)]))
+    rows = [data.row("tl-full", 1e-6, 0.05, precision="float")]
+    rows += [data.row("tl-full", 1e-6, 0.05, mesh="coarser"), data.row("tl-full", 1e-6, None)]
+    data.write("curves/a.json", data.choices([*rows, data.row("tl-full", 1e-6, 0.002)]))
     data.make()
-    data.write("curves/a.json", data.ladder([*rungs, data.rung("tl-full", 1e-6, 0.05)]))
+    data.write("curves/a.json", data.choices([*rows, data.row("tl-full", 1e-6, 0.05)]))
     data.page.unlink()
     assert main(data.arguments) == 2
-    told = "column, tl-full, double, own mesh: error to the golden 0.002, but choose has 0.05"
-    assert told in capsys.readouterr().err
-    data.write("curves/a.json", data.ladder([data.rung("tl-full", 1e-6, 0.05)], "truth"))
+    message = "column, tl-full, double, own mesh: error to the golden 0.002, but choose has 0.05"
+    assert message in capsys.readouterr().err
+    data.write("curves/a.json", data.choices([data.row("tl-full", 1e-6, 0.05)], "truth"))
     data.make()
-    other = data.ladder([data.rung("tl-full", 1e-6, 0.05)]) | {"revision": "another"}
+    other = data.choices([data.row("tl-full", 1e-6, 0.05)]) | {"revision": "another"}
     data.write("curves/a.json", other)
     data.make()
 
 
 def measured_in(data, **changed):
-    """Makes the case's records those of METHODS, with other values for tl-none."""
+    """Replaces the case's records by those of METHODS, with other values for tl-none."""
     (data.folder / "results/column.tl-perturbation.0.02.h5").unlink()
     data.records = []
     for method, (ns, operations) in METHODS.items():
@@ -217,18 +217,18 @@ def measured_in(data, **changed):
     data.write_verdicts()
 
 
-def test_a_page_of_sound_records_is_made(data):
+def test_a_page_is_made_from_plausible_records(data):
     measured_in(data)
     data.make()
 
 
-def test_a_page_that_cannot_be_true_is_not_made(data, capsys):
+def test_no_page_is_made_from_implausible_records(data, capsys):
     measured_in(data, mean_step_seconds=1e-17, seconds_per_simulated_second=1e32)
     assert main(data.arguments) == 2
-    told = capsys.readouterr().err
-    assert told.startswith("error: ") and told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert message.startswith("error: ") and message.count("\n") == 1
     for words in ("column, tl-none, double, own mesh", "1e-17 s", "at least 1e-6 s", "1e+32 s"):
-        assert words in told
+        assert words in message
     assert not data.page.exists()
 
 

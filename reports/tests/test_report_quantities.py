@@ -1,4 +1,4 @@
-"""What each number of the page is: the list names fields that exist, and the page follows it."""
+"""Definitions of the page's numbers: the list names existing fields, and the page follows it."""
 
 import html
 import re
@@ -18,7 +18,7 @@ def test_every_field_of_verify_is_in_its_records(data):
             assert set(fields) <= known, name
 
 
-def test_names_and_heads_are_one_quantitys_only():
+def test_names_and_heads_are_unique():
     names = [quantity.name for quantity in QUANTITIES.values()]
     assert len(set(names)) == len(names)
     heads = [QUANTITIES[name].column for name in (*FIGURES, *RUN_NUMBERS)]

@@ -1,4 +1,4 @@
-"""Error to the truth over time: what the plate draws; broken files are rejected."""
+"""Error to the truth over time: contents of the plate; broken files are rejected."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What the page says of references by a second program; broken files are rejected."""
+"""The page's text about references by a second program; broken files are rejected."""
 
 import json
 

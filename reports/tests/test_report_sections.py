@@ -1,4 +1,4 @@
-"""The sections of the page from synthetic data: what each shows, or says when it cannot."""
+"""The sections of the page from synthetic data: their contents, or the reason for a gap."""
 
 import json
 import re
@@ -36,17 +36,17 @@ def test_without_optional_files_the_page_names_the_commands(data):
 
 
 def test_a_case_shows_the_errors_of_its_run_where_the_golden_is_no_single_field(data):
-    """As in motion: the verdict has the errors, and the page reads no golden of motion."""
+    """Such as in motion: errors come from the verdict, and the page reads no golden of motion."""
     (data.folder / "reference/golden/column.h5").unlink()
     cases = section(data.make(), "cases")
     assert 'data-value="0.002"' in cases
     assert "no golden stored" not in cases and "no truth stored" in cases
 
 
-def test_the_chart_has_the_points_of_runs_and_ladders(data):
-    rungs = [data.rung("tl-perturbation", 3e-6, 0.01, mesh="elements = [1]", elements=3)]
-    rungs += [data.rung("unknown-method", 3e-6, 0.01)]
-    data.write("curves/a.json", data.ladder(rungs))
+def test_the_chart_has_the_points_of_runs_and_candidates(data):
+    rows = [data.row("tl-perturbation", 3e-6, 0.01, mesh="elements = [1]", elements=3)]
+    rows += [data.row("unknown-method", 3e-6, 0.01)]
+    data.write("curves/a.json", data.choices(rows))
     found = script(data.make(), "chart-data")
     assert len(found["points"]) == 5  # a method that the verdicts do not know has no colour
     coarser = found["points"][-1]
@@ -228,8 +228,8 @@ def test_provenance_has_hashes_and_notices_other_revisions(data):
     document = json.loads((data.folder / "verdicts.json").read_text()) | {"revision": "r1"}
     (data.folder / "verdicts.json").write_text(json.dumps(document))
     data.write("bench.json", {"revision": "r2", "records": []})
-    data.write("curves/a.json", data.ladder([]) | {"revision": "r1"})
-    data.write("curves/b.json", data.ladder([]) | {"revision": "r1"})
+    data.write("curves/a.json", data.choices([]) | {"revision": "r1"})
+    data.write("curves/b.json", data.choices([]) | {"revision": "r1"})
     page = section(data.make(), "provenance")
     assert "0123456789abcdef" in page and "fedcba9876543210" in page
     assert page.count("differs from the runs") == 1
@@ -257,7 +257,7 @@ def test_each_link_of_the_navigation_leads_to_a_heading(data):
 
 
 def test_numbers_on_the_page_begin_with_a_digit():
-    """.3 beside 0.3 looks like another kind: in what the page says and in stored notes."""
+    """.3 beside 0.3 looks inconsistent, in the page's texts and in stored notes."""
     sources = ROOT / "reports/sandglass_report"
     texts = [path for path in sources.rglob("*.j2") if "style" not in path.name]
     texts += [*sources.glob("*.py"), *sources.rglob("*.js"), *(ROOT / "cases").glob("*.toml")]

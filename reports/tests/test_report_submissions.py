@@ -1,4 +1,4 @@
-"""Results of other programs on the page: what of ours they are compared with, and their marks."""
+"""Results of other programs on the page: the entries of ours to compare with, and the marks."""
 
 import json
 
@@ -46,12 +46,12 @@ def read(folder, *entries):
     return read_submissions(folder)
 
 
-def test_the_cheapest_of_ours_that_is_as_accurate_is_the_one_to_compare_with(tmp_path):
+def test_the_cheapest_of_ours_that_is_as_accurate_is_compared_with(tmp_path):
     found = read(
         tmp_path,
         ENTRY,
         ours("cheap", 0.02, 5.0),
-        ours("dear", 0.0001, 40.0),
+        ours("costly", 0.0001, 40.0),
         ours("right", 0.0104, 20.0, seconds_to_rest=0.5),
         ours("elsewhere", 0.0001, 1.0, machine="another"),
         ours("another case", 0.0001, 1.0, case="twist"),
@@ -63,14 +63,14 @@ def test_the_cheapest_of_ours_that_is_as_accurate_is_the_one_to_compare_with(tmp
     assert nearest.in_words().startswith("6.0 times per step, 3.0 times per simulated second")
     assert [s.label for s in found[1:5]] == [
         "Sandglass cheap",
-        "Sandglass dear",
+        "Sandglass costly",
         "Sandglass elsewhere",
         "Sandglass right",
     ]
     assert all(s.nearest is None for s in found[1:])
 
 
-def test_if_none_is_as_accurate_the_most_accurate_is_and_the_page_says_so(tmp_path):
+def test_if_none_is_as_accurate_the_most_accurate_is_compared_with_and_marked(tmp_path):
     better = ENTRY | {"errors": {"golden": {"max": 0.001, "rms": 0.0005}}, "time_step": None}
     nearest = read(tmp_path, better, ours("a", 0.02, 5.0), ours("b", 0.01, 60.0))[0].nearest
     assert (nearest.element, nearest.as_good, nearest.step) == ("b", False, 2.0)
@@ -128,4 +128,4 @@ def test_stored_entries_are_shown():
     others = {s.entry["program"] for s in found if not s.ours}
     assert {"NiftySim", "OpenRadioss", "FEBio"} <= others
     for one in found:
-        assert one.ours or one.nearest  # each was measured beside ours
+        assert one.ours or one.nearest  # each was measured in turn with ours

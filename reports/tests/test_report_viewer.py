@@ -1,4 +1,4 @@
-"""Data of the 3D viewer: arrays that decode to what was there."""
+"""Data of the 3D viewer: arrays that decode to the original values."""
 
 import base64
 import json
@@ -31,7 +31,7 @@ def data_of(data):
     return json.loads(json.dumps(viewer_data(subjects), allow_nan=False)), subjects[0]
 
 
-def test_places_and_errors_of_a_method_come_back(data):
+def test_positions_and_errors_of_a_method_are_decoded(data):
     found, subject = data_of(data)
     case = found["cases"]["column"]
     faces = decoded(case["faces"], "<u2").reshape(-1, 4)
@@ -51,14 +51,14 @@ def test_places_and_errors_of_a_method_come_back(data):
     assert 0.2 / step < min(worst, high) * step and worst <= 0.2 * step
 
 
-def test_the_golden_is_an_answer_and_is_nowhere_wrong(data):
+def test_the_golden_is_an_answer_without_errors(data):
     case = data_of(data)[0]["cases"]["column"]
     assert next(iter(case["answers"])) == "golden"
     assert decoded(case["answers"]["golden"]["error"], "u1").max() == 0
     assert "hourglass" not in case["answers"]["golden"]
 
 
-def test_points_of_kappa_curves_are_not_there(data):
+def test_points_of_kappa_curves_are_left_out(data):
     answers = data_of(data)[0]["cases"]["column"]["answers"]
     assert list(answers) == ["golden", "tl-none", "tl-perturbation"]
 
@@ -69,7 +69,7 @@ def test_without_a_golden_there_is_no_error_to_show(data):
     assert "error" not in case["limits"] and "golden" not in case["answers"]
 
 
-def test_an_answer_that_is_no_number_is_left_out(data):
+def test_an_answer_that_is_not_finite_is_left_out(data):
     import h5py
 
     data.records[0]["golden"] = None

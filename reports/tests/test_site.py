@@ -1,4 +1,4 @@
-"""What is published: the folder that `ci/site` makes, and the workflow that uploads it."""
+"""The published folder that `ci/site` makes, and the workflow that uploads it."""
 
 import shutil
 

@@ -1,4 +1,4 @@
-"""Entries are scored again: all stored ones hold, and a wrong one is refused with its reason."""
+"""Entries are scored again: all stored ones are confirmed, wrong ones are refused with a reason."""
 
 import json
 import shutil
@@ -29,7 +29,7 @@ STRANGER = {
 
 
 @pytest.mark.parametrize("name", [path.name for path in entry_files()])
-def test_stored_entries_are_what_their_displacements_score(name):
+def test_stored_entries_match_the_scores_of_their_displacements(name):
     check.check(FOLDER / name)
 
 
@@ -40,7 +40,7 @@ def test_every_stored_displacement_belongs_to_an_entry():
 
 @pytest.fixture(scope="module")
 def answer(tmp_path_factory):
-    """What another program could have written: nodes in another order, with their coordinates."""
+    """A file as another program could write it: nodes in another order, with their coordinates."""
     folder = tmp_path_factory.mktemp("answer")
     output_of(binary(), "run", "column", "-m", "tl-full", "-o", folder / "result.h5")
     with h5py.File(folder / "result.h5") as file:
@@ -53,9 +53,9 @@ def answer(tmp_path_factory):
 
 
 def submitted(answer, folder, **changed):
-    """The exit code, and the path of the entry of a stranger; an option of None is left out."""
-    told = (STRANGER | changed).items()
-    words = [word for pair in told for word in pair if None not in pair]
+    """The exit code, and the path of a stranger's entry; options that are None are left out."""
+    options = (STRANGER | changed).items()
+    words = [word for pair in options for word in pair if None not in pair]
     code = submit.main([str(answer), *words, "--folder", str(folder)])
     return code, next(iter(entry_files(folder)), None)
 
@@ -72,7 +72,7 @@ def test_a_stranger_submits(answer, tmp_path, capsys):
 
 
 def spoil_displacement(path, entry):
-    """Stores other displacements, under the hash that they have."""
+    """Stores other displacements under their own hash."""
     stored = path.parent / "displacements" / f"{entry['displacement']}.h5"
     with h5py.File(stored, "r+") as file:
         file["displacement"][7, 0] += 1e-3
@@ -88,17 +88,17 @@ def spoil_file(path, entry):
 
 
 def lose_file(path, entry):
-    """Forgets the displacements."""
+    """Removes the displacements."""
     shutil.rmtree(path.parent / "displacements")
 
 
-def tell_less(path, entry):
+def claim_less(path, entry):
     """Claims a smaller error."""
     entry["errors"]["golden"]["max"] /= 2
 
 
-def tell_one_reference(path, entry):
-    """Keeps silent about the truth."""
+def omit_one_reference(path, entry):
+    """Leaves out the errors to the truth."""
     del entry["errors"]["truth"]
 
 
@@ -108,44 +108,44 @@ def name_another_mesh(path, entry):
 
 
 def break_schema(path, entry):
-    """Has a time that is none."""
+    """Has an invalid time."""
     entry["time_step"] = -1.0
 
 
 @pytest.mark.parametrize(
-    "spoil, told",
+    "spoil, message",
     [
         (spoil_displacement, "errors.golden.rms = .*: its displacements score"),
         (spoil_file, "has another SHA-256: it was changed"),
         (lose_file, "is not in displacements/"),
-        (tell_less, "errors.golden.max = .*: its displacements score"),
-        (tell_one_reference, "errors: those to golden, truth are required"),
+        (claim_less, "errors.golden.max = .*: its displacements score"),
+        (omit_one_reference, "errors: those to golden, truth are required"),
         (name_another_mesh, "mesh_hash: the mesh of column is"),
         (break_schema, "time_step: -1.0 is less than"),
     ],
 )
-def test_wrong_entries_are_refused(answer, tmp_path, capsys, spoil, told):
+def test_wrong_entries_are_refused(answer, tmp_path, capsys, spoil, message):
     _, path = submitted(answer, tmp_path)
     entry = json.loads(path.read_text())
     spoil(path, entry)
     path.write_text(json.dumps(entry))
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         check.check(path)
     assert check.main([str(path)]) == 1
     assert capsys.readouterr().err.startswith(f"error: {path}: ")
 
 
 @pytest.mark.parametrize(
-    "changed, told",
+    "changed, message",
     [
         ({"--case": None}, "missing: --case"),
         ({"--case": "colunm"}, "did you mean 'column'"),
         ({"--ns": "-1"}, "ns_per_element_step: -1.0 is less than"),
     ],
 )
-def test_wrong_submissions(answer, tmp_path, capsys, changed, told):
+def test_wrong_submissions(answer, tmp_path, capsys, changed, message):
     assert submitted(answer, tmp_path, **changed) == (2, None)
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_nodes_that_are_not_those_of_the_case(answer, tmp_path, capsys):
@@ -157,7 +157,7 @@ def test_nodes_that_are_not_those_of_the_case(answer, tmp_path, capsys):
 
 
 def test_entries_of_a_comparison(answer, tmp_path):
-    """Rows at rest and in motion of the same program, build, element and numbers are one entry."""
+    """Static and dynamic rows of the same program, build, element and precision form one entry."""
     shared = {"element": "H8", "precision": "float", "failure": None}
     rival = shared | {"program": "NiftySim", "build": "native"}
     own = shared | {"program": "Sandglass", "build": "", "element": "tl-full"}
@@ -172,7 +172,7 @@ def test_entries_of_a_comparison(answer, tmp_path):
         "programs": [
             {"name": "NiftySim", "build": "native", "version": "", "about": "2.5; GCC -O3"}
         ],
-        "at_rest": [
+        "static": [
             rival | more,
             own | more,
             rival | more | {"element": "H9", "failure": "diverged"},

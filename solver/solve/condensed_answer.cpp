@@ -88,9 +88,9 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
   const NodalField no_velocity(scene.mesh.points.size());
   Body<Real> body(model, elements);
   observer.frame(frame_of(body, 0.0, no_velocity));
-  HistoryRow at_rest{};
-  at_rest.reactions = body.reactions_of_sets();
-  observer.history(at_rest);
+  HistoryRow undeformed{};
+  undeformed.reactions = body.reactions_of_sets();
+  observer.history(undeformed);
   constexpr auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   Relaxation result;
   if (settings.max_steps > 0) body.move_to(superposed<Real>(model, elements.layout()));

@@ -80,7 +80,7 @@ double checks_per_step(const Timing& timing, const Scene& scene, const OwnMotion
 
 std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Proceed& proceed) {
   std::vector<Costing> costings(tasks.size());
-  std::vector<std::size_t> twin(tasks.size());
+  std::vector<std::size_t> original(tasks.size());
   std::vector<Timed> group;
   const double room = 0.5 * static_cast<double>(available_memory());
   double taken = 0.0;
@@ -88,8 +88,8 @@ std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Procee
     const auto same = [&](const CostTask& other) {
       return other.scene == tasks[n].scene && same_work(other.choice, tasks[n].choice);
     };
-    twin[n] = static_cast<std::size_t>(std::find_if(tasks.begin(), tasks.end(), same) - tasks.begin());
-    if (twin[n] != n) continue;
+    original[n] = static_cast<std::size_t>(std::find_if(tasks.begin(), tasks.end(), same) - tasks.begin());
+    if (original[n] != n) continue;
     try {
       group.push_back(make_timed(tasks[n], n, proceed));
     } catch (const InputError& error) {
@@ -109,7 +109,7 @@ std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Procee
   }
   time_together(tasks, group, costings, proceed);
   for (std::size_t n = 0; n < tasks.size(); ++n) {
-    costings[n] = costings[twin[n]];
+    costings[n] = costings[original[n]];
     if (!costings[n].cost || tasks[n].motion == nullptr) continue;
     costings[n].cost->mean_step = tasks[n].motion->mean_step;
     costings[n].cost->remark = tasks[n].motion->remark;

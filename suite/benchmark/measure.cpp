@@ -18,47 +18,47 @@ double seconds_between(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double>(end - start).count();
 }
 
-double time_steps(Candidate& candidate, int steps) {
+double time_steps(Steppable& timed, int steps) {
   const auto start = Clock::now();
-  for (int s = 0; s < steps; ++s) candidate.step();
+  for (int s = 0; s < steps; ++s) timed.step();
   return seconds_between(start, Clock::now());
 }
 
 /// Goes to a state and takes untimed steps, which wake sleeping threads and refill their caches.
-void warm_up(Candidate& candidate, std::size_t state, int steps) {
-  candidate.restart(state);
-  for (int s = 0; s < steps; ++s) candidate.step();
+void warm_up(Steppable& timed, std::size_t state, int steps) {
+  timed.restart(state);
+  for (int s = 0; s < steps; ++s) timed.step();
 }
 
-int steps_per_batch(Candidate& candidate, double batch_seconds) {
+int steps_per_batch(Steppable& timed, double batch_seconds) {
   constexpr int most = 2000;
-  warm_up(candidate, 0, 1);
-  const double step = std::min(time_steps(candidate, 1), time_steps(candidate, 1));
-  const double all_states = std::max(step, 1e-9) * static_cast<double>(candidate.states());
+  warm_up(timed, 0, 1);
+  const double step = std::min(time_steps(timed, 1), time_steps(timed, 1));
+  const double all_states = std::max(step, 1e-9) * static_cast<double>(timed.states());
   return std::clamp(static_cast<int>(batch_seconds / all_states), 1, most);
 }
 
 /// In every state, times one batch as a whole for the mean, and another one step by step for the spread of
 /// single steps. There are two because reading the clock slows the steps of small meshes.
 void time_batches(const Entry& entry, int steps, Timing& timing) {
-  Candidate& candidate = *entry.candidate;
+  Steppable& timed = *entry.timed;
   std::optional<OneProcessor> bound;
   if (entry.threads == 1) bound.emplace();
   double sum = 0.0;
-  for (std::size_t state = 0; state < candidate.states(); ++state) {
-    warm_up(candidate, state, (steps + 1) / 2);
-    sum += time_steps(candidate, steps);
+  for (std::size_t state = 0; state < timed.states(); ++state) {
+    warm_up(timed, state, (steps + 1) / 2);
+    sum += time_steps(timed, steps);
     auto before = Clock::now();
     for (int s = 0; s < steps; ++s) {
-      candidate.step();
+      timed.step();
       const auto now = Clock::now();
       timing.seconds_of_a_step.push_back(seconds_between(before, now));
       before = now;
     }
-    candidate.check();
+    timed.check();
     timing.seconds_of_a_check.push_back(seconds_between(before, Clock::now()));
   }
-  timing.seconds_per_step.push_back(sum / (steps * static_cast<double>(candidate.states())));
+  timing.seconds_per_step.push_back(sum / (steps * static_cast<double>(timed.states())));
 }
 
 }  // namespace
@@ -72,14 +72,14 @@ std::vector<Timing> measure(std::span<const Entry> entries, const MeasureSetting
     if (!proceed(share)) throw ComputationError("bench: interrupted; nothing was written");
   };
   for (std::size_t n = 0; n < entries.size(); ++n) {
-    Candidate& candidate = *entries[n].candidate;
-    timings[n].force_difference = relative_difference(candidate.forces(), *entries[n].reference);
+    Steppable& timed = *entries[n].timed;
+    timings[n].force_difference = relative_difference(timed.forces(), *entries[n].reference);
     timings[n].status = force_status(timings[n].force_difference, entries[n].limit);
     require_proceed(0.0);
     if (timings[n].status != "ok") continue;
-    steps[n] = steps_per_batch(candidate, settings.batch_seconds);
+    steps[n] = steps_per_batch(timed, settings.batch_seconds);
     time_batches(entries[n], steps[n], timings[n]);  // every batch goes through the same states
-    candidate.require_healthy();
+    timed.require_healthy();
     timings[n].seconds_per_step.clear();
     timings[n].seconds_of_a_step.clear();
     timings[n].seconds_of_a_check.clear();

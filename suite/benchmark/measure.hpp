@@ -11,14 +11,14 @@
 namespace sandglass {
 
 /// Something that takes steps and is timed.
-class Candidate {
+class Steppable {
  public:
-  Candidate() = default;
-  Candidate(const Candidate&) = delete;
-  Candidate& operator=(const Candidate&) = delete;
-  virtual ~Candidate() = default;
+  Steppable() = default;
+  Steppable(const Steppable&) = delete;
+  Steppable& operator=(const Steppable&) = delete;
+  virtual ~Steppable() = default;
 
-  /// Forces (N) in the numbering of the mesh, after a few increments that are the same for all candidates.
+  /// Forces (N) in the numbering of the mesh, after a few increments that are the same whatever is timed.
   virtual NodalField forces() = 0;
 
   /// The number of states in which it is timed, if the cost of a step depends on the state.
@@ -36,19 +36,19 @@ class Candidate {
   virtual void require_healthy() = 0;
 };
 
-/// A candidate and the forces that it must compute before it is timed.
+/// Something to be timed, and the forces that it must compute before it is timed.
 struct Entry {
-  Candidate* candidate;
+  Steppable* timed;
   const NodalField* reference;  ///< forces, N
   double limit;                 ///< of the relative difference
-  int threads = 1;              ///< of the candidate; a single one stays on one processor
+  int threads = 1;              ///< of its steps; a single one stays on one processor
 };
 
 /// The measurements of one entry.
 struct Timing {
   std::string status;                     ///< "ok", or the reason why there are no times
   double force_difference;                ///< relative to the reference
-  std::vector<double> seconds_per_step;   ///< mean of each batch over the candidate's states
+  std::vector<double> seconds_per_step;   ///< mean of each batch over its states
   std::vector<double> seconds_of_a_step;  ///< single steps
   std::vector<double> seconds_of_a_check;
 };

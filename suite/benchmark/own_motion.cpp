@@ -115,9 +115,9 @@ OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proce
   const Scene moving = in_own_motion(scene);
   const DynamicsSettings& dynamics = moving.settings.dynamics;
   const Model model(moving, choice);
-  const double at_rest =
+  const double undeformed_step =
       dynamics.step_fraction * stable_step(model, NodalField(moving.mesh.points.size())).step;
-  StepKeeper keeper(adapts, std::lround(most_steps * dynamics.duration / at_rest), proceed);
+  StepKeeper keeper(adapts, std::lround(most_steps * dynamics.duration / undeformed_step), proceed);
   OwnMotion found;
   try {
     Motion motion = integrate(model, keeper);

@@ -24,7 +24,7 @@ NodalField wavy_field(const Scene& scene);
 /// A model that takes the steps of a dynamic run, starting from these waves. Steps are 0.9 of the stable one
 /// and damped, so that the motion stays bounded. A condensed method repeats its update instead: displacements
 /// of all nodes and forces on the driven sets. The scene must outlive it.
-class SteppedModel : public Candidate {
+class SteppedModel : public Steppable {
  public:
   /// Operations and bytes of a step, per element.
   virtual Work work() const = 0;

@@ -1,38 +1,55 @@
 #include "choice/candidates.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "assembly/method_entry.hpp"
+#include "choice/method_choices.hpp"
+
 namespace sandglass {
 
-std::string_view unfit(const MethodEntry& method, bool at_rest) {
-  if (method.is_condensed && !at_rest) return "superposes static answers and cannot compute motions";
-  if (method.damps_only && at_rest)
-    return "its hourglass control resists only velocities, so it has no static answer";
-  if (!method.controls_hourglass) {
-    return "does not resist hourglass modes: disturbances remain";
-  }
-  return "";
+const NodalField& CandidateMesh::farthest() const {
+  const Displacements undeformed(reference.size(), NodalField(scene.mesh.points.size()));
+  return reference[worst_time(reference, undeformed)];
 }
 
-std::vector<MethodChoice> choices_of(const MethodEntry& method, const MethodChoice& plain, const AnyLaw& law,
-                                     double tolerance) {
-  std::vector<MethodChoice> choices;
-  const auto add = [&](auto&& change) {
-    choices.push_back(plain);
-    change(choices.back());
+std::string CandidateMesh::name() const {
+  return (own() ? "own mesh" : difference) + (steps.empty() ? "" : ", " + steps);
+}
+
+std::vector<Candidate> make_candidates(const std::deque<CandidateMesh>& meshes, const CandidatePlan& plan) {
+  std::vector<Candidate> candidates;
+  const auto asked = [&](std::string_view method) {
+    return plan.methods.empty() ||
+           std::find(plan.methods.begin(), plan.methods.end(), method) != plan.methods.end();
   };
-  if (method.adapts()) {
-    for (const double share : accuracy_shares) {
-      add([&](MethodChoice& choice) { choice.accuracy = share * tolerance; });
+  for (const auto& mesh : meshes) {
+    for (const MethodEntry& method : methods()) {
+      if (!asked(method.name)) continue;
+      MethodChoice plain{.method = std::string(method.name), .threads = plan.threads};
+      if (const std::string_view why = unfit(method, mesh.scene.settings.quasi_static); !why.empty()) {
+        if (mesh.own() && mesh.steps.empty()) candidates.push_back({plain, &mesh, std::string(why)});
+        continue;
+      }
+      for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+        plain.precision = precision;
+        for (auto& choice :
+             choices_of(method, plain, mesh.scene.materials.list.front().law, plan.tolerance)) {
+          candidates.push_back({std::move(choice), &mesh});
+        }
+      }
     }
-    return choices;
   }
-  choices.push_back(plain);
-  if (method.kappa_affects_equilibrium) {
-    const double usual = method.auto_kappa(elastic_law(kernel_law(law)), plain.kappa_modulus).value();
-    for (const double strength : other_strengths) {
-      add([&](MethodChoice& choice) { choice.kappa = strength * usual; });
-    }
-  }
-  return choices;
+  return candidates;
+}
+
+std::string name_of(const Candidate& candidate) {
+  const auto& choice = candidate.choice;
+  const std::string kappa = choice.kappa ? fmt::format(" kappa {:.3g}", *choice.kappa) : "";
+  const std::string accuracy =
+      method_named(choice.method).adapts() ? fmt::format(" accuracy {:.3g} %", 100.0 * choice.accuracy) : "";
+  return fmt::format("{}{}{} {}", choice.method, kappa, accuracy, name_of(choice.precision));
 }
 
 }  // namespace sandglass

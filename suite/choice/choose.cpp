@@ -9,8 +9,8 @@
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "choice/candidate_cost.hpp"
 #include "choice/longer_steps.hpp"
-#include "choice/rung_cost.hpp"
 #include "choice/variations.hpp"
 #include "comparison/comparison.hpp"
 #include "comparison/truth_estimate.hpp"
@@ -20,7 +20,7 @@ namespace sandglass {
 
 namespace {
 
-/// Evaluations of the forces after which a rung has no static equilibrium: existing answers take some
+/// Evaluations of the forces after which a candidate has no static equilibrium: existing answers take some
 /// hundreds.
 constexpr int most_evaluations = 2000;
 
@@ -28,8 +28,8 @@ void require_methods(const Demand& demand) {
   for (const auto& name : demand.methods) method_named(name, "--methods");
 }
 
-/// The meshes of rungs: the user's, and others on which the golden's own element still finds an answer. All
-/// others that were tried are reported.
+/// The meshes of candidates: the user's, and others on which the golden's own element still finds an answer.
+/// All others that were tried are reported.
 class Meshes {
  public:
   Meshes(CaseOnMesh problem, const Scene& scene, Choice& choice, Evaluator& evaluator)
@@ -57,7 +57,7 @@ class Meshes {
   void add_longer_steps() {
     for (std::size_t n = 0, count = choice_.meshes.size(); n < count; ++n) {
       for (const auto& [steps, problem] : longer_steps(choice_.meshes[n].problem)) {
-        const LadderMesh& mesh = choice_.meshes[n];
+        const CandidateMesh& mesh = choice_.meshes[n];
         if (!try_out({mesh.difference, problem, make_scene(problem), mesh.reference, steps})) break;
       }
     }
@@ -66,9 +66,9 @@ class Meshes {
   /// Refines meshes that are too coarse where the golden's own element errs. A mesh with more elements than a
   /// sufficient one is not worth it: its smallest elements, which determine its step, are also smaller.
   void add_refined() {
-    const LadderMesh& own = choice_.meshes.front();
+    const CandidateMesh& own = choice_.meshes.front();
     const bool own_suffices = evaluator_.evaluate_mesh(own).reason.empty();
-    for (const LadderMesh& mesh : choice_.meshes) {
+    for (const CandidateMesh& mesh : choice_.meshes) {
       if (!mesh.own() || own_suffices) enough_elements_ = std::min(enough_elements_, elements_of(mesh.scene));
     }
     if (!own_suffices) too_coarse_.emplace_front("", own.problem);
@@ -86,8 +86,8 @@ class Meshes {
     return try_out({difference, problem, std::move(scene), std::move(reference)});
   }
 
-  /// Whether the golden's own element finds an answer on a mesh; if so, rungs use it.
-  bool try_out(LadderMesh mesh) {
+  /// Whether the golden's own element finds an answer on a mesh; if so, candidates use it.
+  bool try_out(CandidateMesh mesh) {
     choice_.others.push_back({mesh.name(), evaluator_.evaluate_mesh(mesh)});
     MeshAttempt& attempt = choice_.others.back();
     attempt.kept = attempt.evaluation.reason.empty();
@@ -137,16 +137,16 @@ class Meshes {
   std::size_t enough_elements_ = std::numeric_limits<std::size_t>::max();
 };
 
-/// The sort key of a rung: its cost. An adaptive rung comes after fixed ones that cost up to a tenth more,
-/// because fixed elements are simpler.
+/// The sort key of a candidate: its cost. An adaptive candidate comes after fixed ones that cost up to a
+/// tenth more, because fixed elements are simpler.
 double rank(const Attempt& attempt) {
   constexpr double price_of_change = 1.1;
   if (!attempt.cost) return std::numeric_limits<double>::infinity();
   const double cost = attempt.cost->per_simulated_second().value_or(std::numeric_limits<double>::infinity());
-  return method_named(attempt.rung.choice.method).adapts() ? price_of_change * cost : cost;
+  return method_named(attempt.candidate.choice.method).adapts() ? price_of_change * cost : cost;
 }
 
-/// Why a rung is too expensive; empty if it is not.
+/// Why a candidate is too expensive; empty if it is not.
 std::string cost_reason(const StepCost& cost, const Demand& demand) {
   if (demand.budget && cost.seconds > *demand.budget) {
     return fmt::format("too expensive: {} takes {:.3g} ms, and may take {:.3g} ms",
@@ -158,12 +158,12 @@ std::string cost_reason(const StepCost& cost, const Demand& demand) {
   return "";
 }
 
-std::vector<Attempt> make_attempts(std::vector<Rung> rungs, const std::vector<Costing>& costings) {
+std::vector<Attempt> make_attempts(std::vector<Candidate> candidates, const std::vector<Costing>& costings) {
   std::vector<Attempt> attempts;
-  for (std::size_t n = 0; n < rungs.size(); ++n) {
-    Attempt attempt{.rung = std::move(rungs[n]), .cost = costings[n].cost};
-    attempt.evaluation.reason = attempt.rung.unfit;
-    if (!attempt.cost && attempt.rung.unfit.empty()) attempt.evaluation.reason = costings[n].status;
+  for (std::size_t n = 0; n < candidates.size(); ++n) {
+    Attempt attempt{.candidate = std::move(candidates[n]), .cost = costings[n].cost};
+    attempt.evaluation.reason = attempt.candidate.unfit;
+    if (!attempt.cost && attempt.candidate.unfit.empty()) attempt.evaluation.reason = costings[n].status;
     if (!attempt.evaluation.reason.empty()) attempt.outcome = Outcome::refused;
     attempts.push_back(std::move(attempt));
   }
@@ -177,19 +177,19 @@ bool can_show(const Reference& reference, double error) {
   return reference.name != "truth" || reference.own.largest.value_or(0.0) <= error;
 }
 
-/// Evaluates rungs, starting with the cheapest.
-void climb(Choice& choice, Evaluator& evaluator, const ProgressOf& progress) {
+/// Evaluates candidates, starting with the cheapest.
+void try_candidates(Choice& choice, Evaluator& evaluator, const ProgressOf& progress) {
   const Demand& demand = choice.demand;
   for (std::size_t n = 0; n < choice.attempts.size(); ++n) {
     Attempt& attempt = choice.attempts[n];
     if (attempt.outcome == Outcome::refused) continue;
     if (choice.chosen && !demand.all) continue;
     const double share = static_cast<double>(n) / static_cast<double>(choice.attempts.size());
-    if (!progress(share, name_of(attempt.rung)))
+    if (!progress(share, name_of(attempt.candidate)))
       throw ComputationError("choose: interrupted; nothing was written");
-    const std::string too_dear = cost_reason(*attempt.cost, demand);
-    if (too_dear.empty() || demand.all) attempt.evaluation = evaluator.evaluate(attempt.rung);
-    if (!too_dear.empty()) attempt.evaluation.reason = too_dear;
+    const std::string too_expensive = cost_reason(*attempt.cost, demand);
+    if (too_expensive.empty() || demand.all) attempt.evaluation = evaluator.evaluate(attempt.candidate);
+    if (!too_expensive.empty()) attempt.evaluation.reason = too_expensive;
     if (attempt.evaluation.reason.empty() && !can_show(choice.reference, demand.tolerance)) {
       attempt.evaluation.reason = "closer to the truth than the error of the truth itself";
     }
@@ -258,11 +258,11 @@ Choice choose(const CaseOnMesh& problem, const Demand& demand, const ProgressOf&
   if (!scene.settings.quasi_static) meshes.add_longer_steps();
   if (demand.against == "truth" && scene.settings.quasi_static) meshes.add_refined();
   stage = "time of steps";
-  auto rungs = make_ladder(choice.meshes, {demand.methods, demand.tolerance, demand.threads});
-  const auto costings = measure_costs(rungs, proceed);
-  choice.attempts = make_attempts(std::move(rungs), costings);
+  auto candidates = make_candidates(choice.meshes, {demand.methods, demand.tolerance, demand.threads});
+  const auto costings = measure_costs(candidates, proceed);
+  choice.attempts = make_attempts(std::move(candidates), costings);
   stage = "answers";
-  climb(choice, evaluator, progress);
+  try_candidates(choice, evaluator, progress);
   return choice;
 }
 
@@ -273,14 +273,14 @@ std::vector<std::string> remarks(const Choice& choice) {
   if (choice.chosen) return said;
   const Attempt* best = nearest(choice);
   if (best != nullptr) {
-    said.push_back(fmt::format("the most accurate rung computed is {}, {}: {}; it was rejected: {}",
-                               name_of(best->rung), best->rung.mesh->name(), percent(*best->evaluation.error),
-                               best->evaluation.reason));
+    said.push_back(fmt::format("the most accurate candidate computed is {}, {}: {}; it was rejected: {}",
+                               name_of(best->candidate), best->candidate.mesh->name(),
+                               percent(*best->evaluation.error), best->evaluation.reason));
   }
   for (const auto& attempt : choice.attempts) {
-    const auto& [rung, cost, evaluation, outcome] = attempt;
-    const bool is_golden = rung.choice.method == golden_method && rung.mesh->own() &&
-                           rung.choice.precision == Precision::double_precision;
+    const auto& [candidate, cost, evaluation, outcome] = attempt;
+    const bool is_golden = candidate.choice.method == golden_method && candidate.mesh->own() &&
+                           candidate.choice.precision == Precision::double_precision;
     if (!is_golden || !evaluation.error || !(*evaluation.error > tolerance)) continue;
     said.push_back(fmt::format(
         "the golden's own element is {} off on this mesh: this error is due to the mesh, and no method can "

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "choice/candidates.hpp"
 #include "choice/evaluation.hpp"
-#include "choice/ladder.hpp"
 #include "comparison/step_cost.hpp"
 
 namespace sandglass {
@@ -18,17 +18,17 @@ struct Demand {
   std::optional<double> budget = {};  ///< the most time of a step or answer, s
   std::vector<std::string> methods = {};
   int threads = 1;
-  bool all = false;  ///< try every rung, not only up to the first that suffices
+  bool all = false;  ///< try every candidate, not only up to the first that suffices
 };
 
-/// The outcome of a rung.
+/// The outcome of a candidate.
 enum class Outcome { chosen, sufficient, refused, not_tried };
 
 std::string_view name_of(Outcome outcome);
 
-/// A row of the table of rungs.
+/// A row of the table of candidates.
 struct Attempt {
-  Rung rung;
+  Candidate candidate;
   std::optional<StepCost> cost = {};
   Evaluation evaluation = {};
   Outcome outcome = Outcome::not_tried;
@@ -45,7 +45,7 @@ struct MeshAttempt {
 struct Choice {
   Demand demand;
   Reference reference;
-  std::deque<LadderMesh> meshes;           ///< the meshes of rungs
+  std::deque<CandidateMesh> meshes;        ///< the meshes of candidates
   std::vector<MeshAttempt> others = {};    ///< all other meshes that were tried
   std::vector<Attempt> attempts = {};      ///< from the cheapest to the costliest; those without a cost last
   std::optional<std::size_t> chosen = {};  ///< index into the attempts; none: nothing suffices
@@ -59,8 +59,8 @@ using ProgressOf = std::function<bool(double share, const std::string& remark)>;
 /// element: an answer that is closer than its mesh allows is so by luck, and rejected. For a static answer
 /// compared with the truth, meshes that are too coarse are refined where that element errs, until it is close
 /// enough. For a motion, meshes are tried with longer steps in the same way (longer_steps.hpp). Then the
-/// rungs are timed, put in the order of their cost per simulated second at the mean step of the case's own
-/// motion (own_motion.hpp), and climbed. Throws InputError for an unknown method or a missing stored
+/// candidates are timed, put in the order of their cost per simulated second at the mean step of the case's
+/// own motion (own_motion.hpp), and tried. Throws InputError for an unknown method or a missing stored
 /// reference, ComputationError if the reference has no answer or the user interrupts.
 Choice choose(const CaseOnMesh& problem, const Demand& demand, const ProgressOf& progress);
 

@@ -17,25 +17,25 @@ Json or_null(const std::optional<Value>& value) {
 }
 
 Json to_record(const Attempt& attempt) {
-  const auto& [rung, cost, evaluation, outcome] = attempt;
-  return {
-      {"rung", name_of(rung)},
-      {"method", rung.choice.method},
-      {"kappa", or_null(rung.choice.kappa)},
-      {"accuracy", method_named(rung.choice.method).adapts() ? Json(rung.choice.accuracy) : Json(nullptr)},
-      {"precision", name_of(rung.choice.precision)},
-      {"mesh", rung.mesh->name()},
-      {"elements", rung.mesh->scene.mesh.cells.size()},
-      {"seconds", cost ? Json(cost->seconds) : Json(nullptr)},
-      {"check_seconds_per_step", cost ? Json(cost->checks) : Json(nullptr)},
-      {"step_size", cost ? or_null(cost->mean_step) : Json(nullptr)},
-      {"step_remark", cost ? cost->remark : ""},
-      {"seconds_per_simulated_second", cost ? or_null(cost->per_simulated_second()) : Json(nullptr)},
-      {"run_seconds_per_simulated_second", or_null(evaluation.per_simulated_second)},
-      {"error", or_null(evaluation.error)},
-      {"smallest_jacobian", or_null(evaluation.smallest_jacobian)},
-      {"outcome", name_of(outcome)},
-      {"reason", evaluation.reason}};
+  const auto& [candidate, cost, evaluation, outcome] = attempt;
+  return {{"rung", name_of(candidate)},
+          {"method", candidate.choice.method},
+          {"kappa", or_null(candidate.choice.kappa)},
+          {"accuracy",
+           method_named(candidate.choice.method).adapts() ? Json(candidate.choice.accuracy) : Json(nullptr)},
+          {"precision", name_of(candidate.choice.precision)},
+          {"mesh", candidate.mesh->name()},
+          {"elements", candidate.mesh->scene.mesh.cells.size()},
+          {"seconds", cost ? Json(cost->seconds) : Json(nullptr)},
+          {"check_seconds_per_step", cost ? Json(cost->checks) : Json(nullptr)},
+          {"step_size", cost ? or_null(cost->mean_step) : Json(nullptr)},
+          {"step_remark", cost ? cost->remark : ""},
+          {"seconds_per_simulated_second", cost ? or_null(cost->per_simulated_second()) : Json(nullptr)},
+          {"run_seconds_per_simulated_second", or_null(evaluation.per_simulated_second)},
+          {"error", or_null(evaluation.error)},
+          {"smallest_jacobian", or_null(evaluation.smallest_jacobian)},
+          {"outcome", name_of(outcome)},
+          {"reason", evaluation.reason}};
 }
 
 }  // namespace

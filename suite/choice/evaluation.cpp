@@ -18,7 +18,7 @@ namespace sandglass {
 
 namespace {
 
-/// The load, over the case's, at which a rung must still find an answer.
+/// The load, over the case's, at which a candidate must still find an answer.
 constexpr double margin = 1.1;
 
 /// Asks whether to continue during the search for an answer.
@@ -72,8 +72,9 @@ double largest_gradient(const Mesh& mesh, const Displacements& history) {
 }
 
 /// The mistake of an answer that is too far from the reference.
-std::string error_reason(const Rung& rung, const Symptoms& symptoms, double tolerance, double gradient) {
-  if (method_named(rung.choice.method).is_linear && gradient > 0.1) {
+std::string error_reason(const Candidate& candidate, const Symptoms& symptoms, double tolerance,
+                         double gradient) {
+  if (method_named(candidate.choice.method).is_linear && gradient > 0.1) {
     return fmt::format("small-strain theory, but displacement gradients reach {:.2g}", gradient);
   }
   switch (diagnose(symptoms, tolerance)) {
@@ -145,13 +146,13 @@ Evaluator::Evaluator(const Scene& scene, const Reference& reference, double tole
       proceed_(proceed),
       largest_gradient_(largest_gradient(scene.mesh, reference.u)) {}
 
-Evaluation Evaluator::evaluate(const Rung& rung) {
-  Evaluation found = evaluate_answer(rung);
-  if (found.reason.empty()) found.reason = margin_reason(rung);
+Evaluation Evaluator::evaluate(const Candidate& candidate) {
+  Evaluation found = evaluate_answer(candidate);
+  if (found.reason.empty()) found.reason = margin_reason(candidate);
   return found;
 }
 
-Evaluation Evaluator::evaluate_mesh(const LadderMesh& mesh) {
+Evaluation Evaluator::evaluate_mesh(const CandidateMesh& mesh) {
   Evaluation found = evaluate_answer({golden_element(1), &mesh});
   if (!found.reason.empty() && found.error) {
     found.reason = mesh.steps.empty() ? "too coarse for any method" : "too soft for any method";
@@ -159,37 +160,38 @@ Evaluation Evaluator::evaluate_mesh(const LadderMesh& mesh) {
   return found;
 }
 
-Evaluation Evaluator::evaluate_answer(const Rung& rung) {
-  const Scene& scene = rung.mesh->scene;
-  const Answer answer = find_answer(scene, rung.choice, proceed_);
+Evaluation Evaluator::evaluate_answer(const Candidate& candidate) {
+  const Scene& scene = candidate.mesh->scene;
+  const Answer answer = find_answer(scene, candidate.choice, proceed_);
   if (answer.refused || answer.u.empty()) return {.reason = failure_reason(answer)};
   Evaluation found;
-  found.smallest_jacobian = smallest_jacobian(Model(scene, rung.choice), answer.u);
+  found.smallest_jacobian = smallest_jacobian(Model(scene, candidate.choice), answer.u);
   if (!scene.settings.quasi_static)
     found.per_simulated_second = answer.seconds / scene.settings.dynamics.duration;
-  const Displacements u = rung.mesh->own() ? answer.u : interpolate(scene.mesh, answer.u, scene_.mesh.points);
+  const Displacements u =
+      candidate.mesh->own() ? answer.u : interpolate(scene.mesh, answer.u, scene_.mesh.points);
   found.error = accuracy(u, reference_.u, nullptr, reference_.unit).max_relative_error;
   if (answer.failure) {
     found.reason = failure_reason(answer);
   } else if (!(*found.error <= tolerance_)) {
     // Nodes of a coarser mesh are compared with the reference's displacements on that mesh.
-    const Symptoms told = symptoms(scene, answer.u, answer.energies.strain + answer.energies.hourglass,
-                                   rung.mesh->reference, reference_.unit);
-    found.reason =
-        error_reason(rung, {*found.error, told.zigzag_share, told.bending_ratio, told.stiffness_ratio},
-                     tolerance_, largest_gradient_);
+    const Symptoms observed = symptoms(scene, answer.u, answer.energies.strain + answer.energies.hourglass,
+                                       candidate.mesh->reference, reference_.unit);
+    found.reason = error_reason(
+        candidate, {*found.error, observed.zigzag_share, observed.bending_ratio, observed.stiffness_ratio},
+        tolerance_, largest_gradient_);
   }
   return found;
 }
 
-std::string Evaluator::margin_reason(const Rung& rung) {
+std::string Evaluator::margin_reason(const Candidate& candidate) {
   const auto survives = [&](const MethodChoice& choice) {
-    const Scene harder = scaled(rung.mesh->scene, margin);
+    const Scene harder = scaled(candidate.mesh->scene, margin);
     return find_answer(harder, choice, proceed_);
   };
-  const Answer beyond = survives(rung.choice);
+  const Answer beyond = survives(candidate.choice);
   if (!beyond.failure && !beyond.refused) return "";
-  const Answer golden = survives(golden_element(rung.choice.threads));
+  const Answer golden = survives(golden_element(candidate.choice.threads));
   if (golden.failure || golden.refused) return "";
   return fmt::format("no reserve: with a tenth more load {}", failure_reason(beyond));
 }

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "benchmark/measure.hpp"
-#include "choice/ladder.hpp"
+#include "choice/candidates.hpp"
 #include "comparison/finding.hpp"
 #include "comparison/reference_file.hpp"
 
 namespace sandglass {
 
-/// The reference of the rungs.
+/// The reference of the candidates.
 struct Reference {
   std::string name;  ///< "tl-mean-dilatation", "golden" or "truth"
   Displacements u;   ///< m, at the nodes of the user's mesh and the times of its answer
@@ -23,7 +23,7 @@ struct Reference {
 /// element finds no answer.
 Reference make_reference(const Scene& scene, const std::string& against, const Proceed& proceed);
 
-/// The error of a rung's answer, and why it is rejected, if it is.
+/// The error of a candidate's answer, and why it is rejected, if it is.
 struct Evaluation {
   std::optional<double> error = {};  ///< max over all nodes of the user's mesh and times, over the unit
   std::optional<double> smallest_jacobian = {};     ///< det F, at the answer
@@ -31,24 +31,24 @@ struct Evaluation {
   std::string reason = {};                          ///< why it is rejected; empty: good enough
 };
 
-/// Compares rungs of one scene with one reference.
+/// Compares candidates of one scene with one reference.
 class Evaluator {
  public:
   /// `scene` is the user's; it and the reference must outlive the evaluator.
   Evaluator(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed);
 
-  /// Computes the rung's answer and its distance from the reference at all nodes of the user's mesh. A rung
-  /// that is close enough must also find an answer with a tenth more load if the golden's own element does.
-  /// Throws ComputationError if interrupted.
-  Evaluation evaluate(const Rung& rung);
+  /// Computes the candidate's answer and its distance from the reference at all nodes of the user's mesh. A
+  /// candidate that is close enough must also find an answer with a tenth more load if the golden's own
+  /// element does. Throws ComputationError if interrupted.
+  Evaluation evaluate(const Candidate& candidate);
 
   /// The error of the golden's own element on a mesh: the error due to the mesh, whatever the method.
-  Evaluation evaluate_mesh(const LadderMesh& mesh);
+  Evaluation evaluate_mesh(const CandidateMesh& mesh);
 
  private:
   /// The evaluation without the reserve.
-  Evaluation evaluate_answer(const Rung& rung);
-  std::string margin_reason(const Rung& rung);
+  Evaluation evaluate_answer(const Candidate& candidate);
+  std::string margin_reason(const Candidate& candidate);
 
   const Scene& scene_;
   const Reference& reference_;

@@ -55,7 +55,7 @@ Answer resting_answer(const Model& model, Observer& observer) {
                 .residual = relaxation.residual,
                 .seconds = relaxation.seconds};
   if (in_equilibrium(relaxation)) return answer;
-  answer.failure = Finding::not_at_rest;
+  answer.failure = Finding::no_equilibrium;
   answer.status = outcome(relaxation, model.choice().precision);
   return answer;
 }

@@ -42,7 +42,7 @@ std::string_view name_of(Finding finding) {
       return "inverted";
     case Finding::unstable:
       return "unstable";
-    case Finding::not_at_rest:
+    case Finding::no_equilibrium:
       break;
   }
   return "not at rest";
@@ -50,7 +50,7 @@ std::string_view name_of(Finding finding) {
 
 Finding finding_of(Breakdown breakdown) {
   if (breakdown == Breakdown::inverted) return Finding::inverted;
-  return breakdown == Breakdown::not_finite ? Finding::unstable : Finding::not_at_rest;
+  return breakdown == Breakdown::not_finite ? Finding::unstable : Finding::no_equilibrium;
 }
 
 HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u) {
@@ -84,9 +84,9 @@ Symptoms symptoms(const Scene& scene, const NodalField& u, double energy, const 
 Symptoms symptoms(const Scene& scene, const Displacements& u, double energy, const Displacements& golden,
                   double unit) {
   const std::size_t worst = worst_time(u, golden);
-  Symptoms told = symptoms(scene, u[worst], energy, golden[worst], unit);
-  if (!scene.settings.quasi_static) told.stiffness_ratio = 1.0;
-  return told;
+  Symptoms result = symptoms(scene, u[worst], energy, golden[worst], unit);
+  if (!scene.settings.quasi_static) result.stiffness_ratio = 1.0;
+  return result;
 }
 
 double good_limit(const std::optional<double>& golden_to_truth) {

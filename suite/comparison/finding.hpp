@@ -12,20 +12,20 @@ namespace sandglass {
 
 /// The outcome of a run, as in the failure maps.
 enum class Finding {
-  good,          ///< within the limit from the golden
-  not_judged,    ///< farther, but closer than the truth is: such a golden cannot judge
-  inaccurate,    ///< farther, for none of the reasons below
-  hourglassing,  ///< farther, because nodes zigzag
-  locking,       ///< farther, because the elements are too stiff
-  inverted,      ///< an element turned inside out
-  unstable,      ///< displacements grew until they were not finite
-  not_at_rest    ///< no static equilibrium was found
+  good,           ///< within the limit from the golden
+  not_judged,     ///< farther, but closer than the truth is: such a golden cannot judge
+  inaccurate,     ///< farther, for none of the reasons below
+  hourglassing,   ///< farther, because nodes zigzag
+  locking,        ///< farther, because the elements are too stiff
+  inverted,       ///< an element turned inside out
+  unstable,       ///< displacements grew until they were not finite
+  no_equilibrium  ///< no static equilibrium was found
 };
 
 /// All of them, from the best to the worst.
-inline constexpr std::array all_findings{Finding::good,         Finding::not_judged, Finding::inaccurate,
-                                         Finding::hourglassing, Finding::locking,    Finding::inverted,
-                                         Finding::unstable,     Finding::not_at_rest};
+inline constexpr std::array all_findings{Finding::good,         Finding::not_judged,    Finding::inaccurate,
+                                         Finding::hourglassing, Finding::locking,       Finding::inverted,
+                                         Finding::unstable,     Finding::no_equilibrium};
 
 /// The word for a finding: "good", "not at rest", ...
 std::string_view name_of(Finding finding);

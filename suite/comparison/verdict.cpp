@@ -117,7 +117,7 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
     verdict.symptoms = symptoms(scene, u, energies.strain + energies.hourglass, *references.golden,
                                 displacement_unit(scene, *references.golden));
     verdict.finding =
-        verdict.ok() ? judge(*verdict.symptoms, golden_to_truth(scene, references)) : Finding::not_at_rest;
+        verdict.ok() ? judge(*verdict.symptoms, golden_to_truth(scene, references)) : Finding::no_equilibrium;
   }
   fill_computed(scene, u.back(), verdict.published);
   return verdict;

@@ -55,7 +55,7 @@ struct Verdict {
   std::string status;  ///< "ok" or "failed: why"
   std::optional<Accuracy> golden;
   std::optional<Accuracy> truth;
-  std::optional<Accuracy> twin;  ///< without a golden: against tl-mean-dilatation, computed here
+  std::optional<Accuracy> mean_dilatation;  ///< without a golden: against tl-mean-dilatation, computed here
   std::optional<Finding>
       finding;  ///< at the worst time; none without a golden, or if the method does not support the case
   std::optional<Symptoms> symptoms;  ///< the basis of the finding; none for a computation that broke down

@@ -65,7 +65,7 @@ Json to_record(const Verdict& verdict) {
               {"residual", verdict.residual},
               {"hourglass_energy_ratio", verdict.hourglass_energy_ratio}};
   add_cost(record, verdict);
-  if (verdict.twin) record["twin"] = to_record(verdict.twin);
+  if (verdict.mean_dilatation) record["twin"] = to_record(verdict.mean_dilatation);
   return record;
 }
 

@@ -27,7 +27,7 @@ inline bool is_conservative(const Problem& problem) {
   const auto damps = [](const Support& support) { return support.damping > 0.0; };
   if (problem.method().damps_only || problem.method().adapts()) return false;
   if (std::ranges::any_of(d.materials, remembers) || follows_a_path(problem)) return false;
-  return problem.at_rest() ||
+  return problem.is_static() ||
          (d.dynamics.damping == 0.0 && std::ranges::none_of(d.forces.of<Support>(), damps));
 }
 
@@ -51,18 +51,18 @@ inline bool is_handed(const Problem& problem) {
 /// to a tenth.
 inline double allowed_for_rounding(const Problem& problem) {
   if (problem.method().adapts()) return 5.0 * problem.choice.accuracy;
-  if (!problem.at_rest()) return 1e-8;
+  if (!problem.is_static()) return 1e-8;
   return follows_a_path(problem) ? 0.02 : 1e-5;
 }
 
 /// Whether elements have no stiffness against hourglass modes: static equilibria are not unique.
 inline bool is_loose(const Problem& problem) {
-  return problem.at_rest() && (!problem.method().controls_hourglass || problem.method().damps_only);
+  return problem.is_static() && (!problem.method().controls_hourglass || problem.method().damps_only);
 }
 
 /// Whether a search that starts at displacements stays there.
-inline bool is_at_rest(const Problem& problem, const NodalField& u, double allowed) {
-  if (!problem.at_rest() || problem.method().is_condensed || follows_a_path(problem)) return false;
+inline bool is_in_equilibrium(const Problem& problem, const NodalField& u, double allowed) {
+  if (!problem.is_static() || problem.method().is_condensed || follows_a_path(problem)) return false;
   const Answer near = answer_of(problem, &u);
   return near.failure.empty() && largest_distance(near.u, u) <= allowed * largest_in(u);
 }
@@ -89,15 +89,17 @@ inline Verdict compare(const Problem& problem, const Answer& one, const Answer& 
     difference = std::max(difference, largest_distance(first(one.v), first(other.v)) / speed);
   }
   if (both && unit > next_to_nothing && other.busiest > 0.0) {
-    const double work = problem.at_rest() ? 0.0 : one.work - other.work;  // depends on the levels in statics
+    const double work =
+        problem.is_static() ? 0.0 : one.work - other.work;  // depends on the levels in statics
     for (const double energy : {one.energy - other.energy, work})
       difference = std::max(difference, 0.1 * std::abs(energy) / one.busiest);
   }
   if (difference <= allowed) return held_if(true, difference);
   const bool whole = problem.description.refinements.empty();
-  const bool two = (both || one.failure != "refused") && whole && is_at_rest(problem, found.u, allowed);
+  const bool two =
+      (both || one.failure != "refused") && whole && is_in_equilibrium(problem, found.u, allowed);
   // Path-dependent forces remember that levels are solved to a tenth; some answers are wrong.
-  const bool open = problem.at_rest() && follows_a_path(problem);
+  const bool open = problem.is_static() && follows_a_path(problem);
   const Kind kind = two ? Kind::explained : open ? Kind::open : Kind::violated;
   return {kind, difference,
           both ? fmt::format("largest {:.3g} and {:.3g} m, energy {:.3g} and {:.3g} J", one.largest,
@@ -119,7 +121,7 @@ inline Verdict compare(const Problem& problem, const Answer& own, const std::opt
     return answer;
   };
   Verdict verdict = compare(problem, own, mapped_back(mapped->problem), allowed_for_rounding(problem));
-  if (verdict.kind < Kind::open || !problem.at_rest() || !own.failure.empty()) return verdict;
+  if (verdict.kind < Kind::open || !problem.is_static() || !own.failure.empty()) return verdict;
   Problem finer = problem, finer_mapped = mapped->problem;
   for (Problem* one : {&finer, &finer_mapped}) {
     one->description.relaxation.tolerance = 1e-12;

@@ -10,7 +10,7 @@ namespace sandglass::verification {
 inline Verdict time_reversal(const Problem& given, const Answer& /*own*/, RandomGeometry& /*random*/) {
   Problem problem = given;
   Case& d = problem.description;
-  if (problem.at_rest() || d.dynamics.time_step == 0.0 || !is_conservative(problem)) return {};
+  if (problem.is_static() || d.dynamics.time_step == 0.0 || !is_conservative(problem)) return {};
   d.rotations.clear();
   for (auto& imposed : d.displacements) imposed.value = {};
   for_each_curve(d, [](LoadCurve& curve) { curve = {.times = {0.0}, .factors = {1.0}}; });
@@ -36,7 +36,7 @@ inline Verdict time_reversal(const Problem& given, const Answer& /*own*/, Random
 /// of second order, at least twice as closely with half the step.
 inline Verdict energy_balance(const Problem& problem, const Answer& own, RandomGeometry& /*random*/) {
   const double step = problem.description.dynamics.time_step;
-  if (problem.at_rest() || step == 0.0 || !own.failure.empty() || !is_conservative(problem)) return {};
+  if (problem.is_static() || step == 0.0 || !own.failure.empty() || !is_conservative(problem)) return {};
   const auto imbalance = [&](double time_step) {
     Problem again = problem;
     again.description.dynamics.time_step = time_step;
@@ -61,7 +61,7 @@ inline Verdict energy_balance(const Problem& problem, const Answer& own, RandomG
 inline Verdict reciprocity(const Problem& given, const Answer& /*own*/, RandomGeometry& random) {
   Problem problem = given;
   Case& d = problem.description;
-  if (!problem.at_rest() || is_loose(problem) || !is_conservative(problem)) return {};
+  if (!problem.is_static() || is_loose(problem) || !is_conservative(problem)) return {};
   if (slackens_somewhere(problem)) return {};  // no constant stiffness
   d.rotations.clear();
   d.forces.of<Pressure>().clear();
@@ -115,7 +115,7 @@ inline Verdict superposition(const Problem& problem, const Answer& own, RandomGe
 /// search from there to stay.
 inline Verdict damping(const Problem& given, const Answer& own, RandomGeometry& /*random*/) {
   constexpr long most_steps = 10000;
-  if (!given.at_rest() || given.method().is_condensed || is_loose(given) || !own.failure.empty()) return {};
+  if (!given.is_static() || given.method().is_condensed || is_loose(given) || !own.failure.empty()) return {};
   if (!is_conservative(given)) return {};
   Problem problem = given;
   const Scene scene = problem.scene();

@@ -93,15 +93,15 @@ class PlainAssembly {
     static_assert(!law_remembers<Law>);
     std::vector<double> rates(history_numbers * mesh_.cells.size());
     if constexpr (Kernel::remembers) {
-      Histories<D> going_on = dual(histories);
+      Histories<D> duals = dual(histories);
       std::vector<D> at(u.size()), step(u.size());
       for (std::size_t k = 0; k < u.size(); ++k) {
         at[k] = D(u[k]);
         step[k] = D(0.0, v[k]);
       }
-      force<D>(at, step, std::numeric_limits<double>::infinity(), going_on);
+      force<D>(at, step, std::numeric_limits<double>::infinity(), duals);
       std::vector<D> numbers(rates.size());
-      std::memcpy(numbers.data(), static_cast<const void*>(going_on.data()), numbers.size() * sizeof(D));
+      std::memcpy(numbers.data(), static_cast<const void*>(duals.data()), numbers.size() * sizeof(D));
       for (std::size_t k = 0; k < rates.size(); ++k) rates[k] = numbers[k].slope;
     }
     return rates;

@@ -24,7 +24,7 @@ struct Problem {
 
   Scene scene() const { return make_scene(description, mesh, sets, element_sets); }
   const MethodEntry& method() const { return method_named(choice.method); }
-  bool at_rest() const { return description.quasi_static; }
+  bool is_static() const { return description.quasi_static; }
 };
 
 /// Whether the forces depend on the path that led to the displacements.
@@ -121,7 +121,7 @@ inline Answer answer_of(const Problem& problem, const NodalField* near = nullptr
                         std::vector<HistoryRow>* rows = nullptr) {
   return attempt([&] {
     Recorder recorder;
-    if (!problem.at_rest()) recorder.last_step = 30 * problem.steps;
+    if (!problem.is_static()) recorder.last_step = 30 * problem.steps;
     Answer answer = run(problem.scene(), problem.choice, recorder, nullptr, near);
     for (const Frame& frame : recorder.frames) {
       answer.largest = std::max(answer.largest, largest_in(frame.u));

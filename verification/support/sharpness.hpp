@@ -34,7 +34,7 @@ struct Strain {
   double largest_stretch;
   double waviness;
 };
-inline constexpr Strain at_rest{1.0, 1.0, 0.0};
+inline constexpr Strain undeformed{1.0, 1.0, 0.0};
 inline constexpr Strain strongly_deformed{0.5, 2.0, 0.2};
 
 /// A random block of elements that the kernel accepts: nodes of a grid are moved by a quarter of an edge for
@@ -105,9 +105,9 @@ double true_over_bound(const Sample& sample, const typename Pair::Law& law,
 
 /// Whether a law loses its stiffness somewhere in a sample, so that a bound cannot be compared.
 template <class Law>
-bool gives_way(const Sample& sample) {
+bool loses_stiffness(const Sample& sample) {
   return std::ranges::any_of(sample.mesh.cells, [&](const Hexahedron& cell) {
-    return gives_way<Law>(gather(sample.mesh.points, cell), gather(sample.u, cell));
+    return loses_stiffness<Law>(gather(sample.mesh.points, cell), gather(sample.u, cell));
   });
 }
 
@@ -140,7 +140,7 @@ Distribution sharpness(RandomGeometry& random, int samples, bool single, const S
     const double ratio = true_over_bound<Pair>(sample, law);
     ++result.samples;
     result.unsafe += ratio <= 1.0 + 1e-10 ? 0 : 1;
-    if (!gives_way<Law>(sample)) result.ratios.push_back(ratio);
+    if (!loses_stiffness<Law>(sample)) result.ratios.push_back(ratio);
   }
   return result;
 }

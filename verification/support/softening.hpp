@@ -55,7 +55,7 @@ constexpr bool may_give_way() {
 
 /// Whether a law loses stiffness at some Gauss point of an element with coordinates X (m) displaced by u (m).
 template <class Law>
-bool gives_way(const NodalVectors<double>& X, const NodalVectors<double>& u) {
+bool loses_stiffness(const NodalVectors<double>& X, const NodalVectors<double>& u) {
   const double limit = smallest_stiff_stretch<Law>(0.0);
   for (const auto& xi : gauss_points()) {
     const Tensor<double> F = identity<double>() + transpose(u) * point_gradient(X, xi).gradient;

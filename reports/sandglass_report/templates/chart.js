@@ -170,7 +170,7 @@ function startChart(Plotly) {
   }
 
   /** The sentence and the table below the chart: the points within both limits, cheapest first. */
-  function tell(view, positions) {
+  function summarize(view, positions) {
     const ours = positions.filter((i) => leads(data.points[i]));
     const enough = ours.filter((i) => keeps(data.points[i], view)).sort((a, b) => data.points[a][view.cost] - data.points[b][view.cost]);
     const best = data.points[enough[0]];
@@ -203,7 +203,7 @@ function startChart(Plotly) {
     delete tools.dataset.drawn;
     get("tolerance").nextElementSibling.textContent = percent(view.tolerance);
     get("budget").nextElementSibling.textContent = seconds(view.budget);
-    tell(view, positions);
+    summarize(view, positions);
     const key = [view.case, view.reference, view.figure, view.cost, view.own ? "own" : "all", view.double ? "double" : "all"].join("|");
     const inView = new Set(positions);
     const lines = data.families.filter((f) => f.every((i) => inView.has(i)));
@@ -238,7 +238,7 @@ function startChart(Plotly) {
     const { name, value } = event.target;
     if (name in wish) wish[name] = value;
     if (name in wish || name === "case") settle();
-    if (name === "case") tools.querySelector(".told").textContent = HINT;
+    if (name === "case") tools.querySelector(".details").textContent = HINT;
     if (scales() !== budgetOf) newBudget();
     draw();
   });
@@ -266,7 +266,7 @@ function startChart(Plotly) {
     for (const event of ["plotly_hover", "plotly_click"])
       plot.on(event, ({ points: [one] }) => {
         const p = data.points[one.customdata];
-        if (p) tools.querySelector(".told").innerHTML = describe(p);
+        if (p) tools.querySelector(".details").innerHTML = describe(p);
       });
     plot.on("plotly_relayout", (change) => {
       const moved = (name) => change[`${name}0`] ?? change[`${name}1`];

@@ -133,7 +133,7 @@ def test_improvements_and_what_is_new_pass(folder):
     assert code == 0 and text.endswith("0 regressions, 3 new, 2 better\n")
 
 
-def test_a_run_that_comes_to_rest_again_is_better(folder):
+def test_a_run_that_converges_again_is_better(folder):
     fail(folder)
     folder.accept()
     folder.golden["max_relative_error"] = 0.7

@@ -7,7 +7,7 @@
 namespace sandglass::verification {
 
 /// A method's answer of a quasi-static scene, which must converge.
-inline Relaxation at_rest(const Scene& scene, const MethodChoice& choice) {
+inline Relaxation static_answer(const Scene& scene, const MethodChoice& choice) {
   Observer quiet;
   Relaxation found = relax(Model(scene, choice), quiet);
   EXPECT_TRUE(found.converged);

@@ -1,6 +1,6 @@
 """Joins files of `sandglass verify --json`, one per case, into one for all cases.
 
-Usage: /usr/bin/python3 verification/lab/verdicts.py FILE... [-o FILE]
+Usage: /usr/bin/python3 verification/sweeps/verdicts.py FILE... [-o FILE]
 Prints the broken limits. Exit codes: 0 all limits hold, 1 one is broken (the joined file is still
 written), 2 an input is missing, invalid, or from another program or machine.
 """
