@@ -226,6 +226,8 @@ ObstacleShape shape_of(const Obstacle& given) {
       return RoundShape{given.point, axis, -INFINITY, INFINITY, given.radius};
     case Obstacle::Shape::box:
       return BoxShape{given.point, given.half_sizes};
+    case Obstacle::Shape::ellipsoid:
+      return EllipsoidShape{given.point, given.half_sizes};
   }
   return {};
 }
@@ -255,7 +257,7 @@ std::optional<BrokenRule> Obstacle::broken_rule() const {
   if (label.empty() || label.find('/') != std::string::npos)
     return BrokenRule{"name", fmt::format("= '{}' must be a word without '/'", label)};
   const std::string_view word = words_of(shape)[static_cast<std::size_t>(shape)];
-  const bool is_plane = shape == Shape::plane, is_box = shape == Shape::box;
+  const bool is_plane = shape == Shape::plane, has_sizes = shape == Shape::box || shape == Shape::ellipsoid;
   const bool has_axis = shape == Shape::capsule || shape == Shape::cylinder;
   struct Need {
     const char* parameter;
@@ -265,9 +267,9 @@ std::optional<BrokenRule> Obstacle::broken_rule() const {
   for (const auto& [parameter, needed, given, rule] :
        {Need{"normal", is_plane, is_given(normal), "must have a length"},
         Need{"end", has_axis, has_axis ? end != point : is_given(end), "must differ from point"},
-        Need{"radius", !is_plane && !is_box, radius > 0.0, "must be positive"},
-        Need{"half_sizes", is_box,
-             is_box ? *std::ranges::min_element(half_sizes) > 0.0 : is_given(half_sizes),
+        Need{"radius", !is_plane && !has_sizes, radius > 0.0, "must be positive"},
+        Need{"half_sizes", has_sizes,
+             has_sizes ? *std::ranges::min_element(half_sizes) > 0.0 : is_given(half_sizes),
              "must be positive"}}) {
     if (needed == given) continue;
     return BrokenRule{parameter, needed ? fmt::format("is needed for shape = '{}' and {}", word, rule)

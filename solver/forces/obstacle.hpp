@@ -15,9 +15,9 @@ struct Obstacle {
   static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = false;
 
-  enum class Shape { plane, sphere, capsule, cylinder, box };
-  friend constexpr std::array<std::string_view, 5> words_of(Shape /*type*/) {
-    return {"plane", "sphere", "capsule", "cylinder", "box"};
+  enum class Shape { plane, sphere, capsule, cylinder, box, ellipsoid };
+  friend constexpr std::array<std::string_view, 6> words_of(Shape /*type*/) {
+    return {"plane", "sphere", "capsule", "cylinder", "box", "ellipsoid"};
   }
 
   std::string label;
@@ -41,7 +41,8 @@ struct Obstacle {
         Parameter{&O::set, "set", "-", Range::any(), "node set with the boundary faces that may touch it"},
         Parameter{&O::shape, "shape", "-", Range::any(), "its shape"},
         Parameter{&O::point, "point", "m", Range::any(),
-                  "a point of the plane, the centre of the sphere or box, or one end of the axis", false},
+                  "a point of the plane, the centre of the sphere, box or ellipsoid, or one end of the axis",
+                  false},
         Parameter{&O::end, "end", "m", Range::any(),
                   "the other end of the axis of a capsule or of a cylinder, which is infinite along it",
                   false},
@@ -49,7 +50,7 @@ struct Obstacle {
         Parameter{&O::radius, "radius", "m", Range::at_least(0.0), "of the sphere, capsule or cylinder",
                   false},
         Parameter{&O::half_sizes, "half_sizes", "m", Range::at_least(0.0),
-                  "half the edge lengths of the box, along the coordinate axes", false},
+                  "half the sizes of the box or ellipsoid along the coordinate axes", false},
         Parameter{&O::inside, "inside", "-", Range::any(), "whether the body is inside of it, as in a cavity",
                   false},
         Parameter{&O::displacement, "displacement", "m", Range::any(), "how far it moves", false},

@@ -79,6 +79,41 @@ struct BoxShape {
   }
 };
 
-using ObstacleShape = std::variant<PlaneShape, RoundShape, BoxShape>;
+/// An ellipsoid with its axes along the coordinate axes.
+struct EllipsoidShape {
+  Vector centre, semi_axes;
+
+  /// The nearest point of the surface is y = a^2 x / (a^2 + t), by components, for the t (m^2) that puts it
+  /// on the surface; the distance is t |y / a^2|. Newton's method for t ascends from a lower bound, as the
+  /// equation is convex and falls. Points near the middle of the ellipsoid, which have several nearest
+  /// points, get any of them.
+  Gap at(const Vector& x) const {
+    constexpr int most = 60;
+    constexpr double rounding = 1e-15;
+    const Vector from = difference(x, centre);
+    double t = -INFINITY, smallest = INFINITY;
+    for (std::size_t i = 0; i < 3; ++i) {
+      t = std::max(t, semi_axes[i] * (std::abs(from[i]) - semi_axes[i]));
+      smallest = std::min(smallest, semi_axes[i]);
+    }
+    Vector slope{};  // y / a^2
+    for (int n = 0; n < most; ++n) {
+      double excess = -1.0, derivative = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double a2 = semi_axes[i] * semi_axes[i], sum = std::max(a2 + t, rounding * a2);
+        slope[i] = from[i] / sum;
+        excess += a2 * slope[i] * slope[i];
+        derivative += 2.0 * a2 * slope[i] * slope[i] / sum;
+      }
+      const double step = derivative > 0.0 ? excess / derivative : 0.0;
+      if (std::abs(step) <= rounding * smallest * smallest) break;
+      t += step;
+    }
+    const double size = std::sqrt(dot(slope, slope));
+    return {size > 0.0 ? t * size : -smallest, direction_of(slope, size)};
+  }
+};
+
+using ObstacleShape = std::variant<PlaneShape, RoundShape, BoxShape, EllipsoidShape>;
 
 }  // namespace sandglass
