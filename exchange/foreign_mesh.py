@@ -10,9 +10,7 @@ from exchange import orientation
 
 HEXAHEDRON = "hexahedron"
 SHOWN = 3  # of faulty items listed in a message
-LARGEST = 20.0  # m; a larger mesh was perhaps meant in millimetres
 SCOPE = 1 << 40  # numbers of instance i begin at i SCOPE, where a file has several
-ROUNDING = 1e-6  # of the diagonal: the error of coordinates in single precision or six digits
 
 
 @dataclass(frozen=True)
@@ -77,7 +75,7 @@ def to_hexahedra(mesh, path, warn):
     corners = np.sort(cells, axis=1)
     twice = block.ids[(corners[:, 1:] == corners[:, :-1]).any(axis=1)]
     _reject(mesh, path, twice, len(cells), "name a node twice; a hexahedron has eight nodes")
-    cells, outer = _oriented(mesh, block, cells, path, warn)
+    cells = _oriented(mesh, block, cells, path, warn)
     rank = np.full(len(mesh.points), -1)
     rank[cells] = 0
     if (lost := np.flatnonzero(rank < 0)).size:
@@ -87,11 +85,6 @@ def to_hexahedra(mesh, path, warn):
         )
     used = np.flatnonzero(rank == 0)
     rank[used] = np.arange(len(used))
-    points = mesh.points[used]
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    _warn_of_seams(mesh, cells, outer, ROUNDING * size, warn)
-    if size > LARGEST:
-        warn(f"the mesh is {size:.3g} m across: coordinates are read as metres")
     sets = {}
     for (scope, name), ids in mesh.sets.items():
         nodes = rank[_find(mesh, order, ids, f"{path}: set '{name}'")]
@@ -101,7 +94,7 @@ def to_hexahedra(mesh, path, warn):
     element_sets = {
         key: np.flatnonzero(np.isin(block.ids, ids)) for key, ids in mesh.element_sets.items()
     }
-    return HexMesh(points, rank[cells], _named(sets, path, warn), _named(element_sets, path))
+    return HexMesh(mesh.points[used], rank[cells], _named(sets, path, warn), _named(element_sets, path))
 
 
 def _named(sets, path, warn=lambda text: None):
@@ -204,10 +197,7 @@ def _find(mesh, order, ids, where):
 
 
 def _oriented(mesh, block, cells, path, warn):
-    """The cells with mirrored ones renumbered, and the nodes of their outer faces.
-
-    Raises InputError for tangled ones.
-    """
+    """The cells with mirrored ones renumbered. Raises InputError for tangled ones."""
     state = orientation.classify(mesh.points, cells)
     tangled = np.flatnonzero(state == orientation.TANGLED)
     if tangled.size:
@@ -233,39 +223,13 @@ def _oriented(mesh, block, cells, path, warn):
             f"{mirrored.size} of {len(cells)} elements had a mirrored node order and were "
             f"renumbered: {mesh.listed(block.ids[mirrored])}"
         )
-    pair, outer = orientation.overlap(cells)
-    if pair:
+    if pair := orientation.overlap(cells):
         first, second = (mesh.listed([block.ids[e]]) for e in pair)
         raise InputError(
             f"{path}: elements {first} and {second} lie on the same side of their common face, "
             "or share it with a third; elements must not overlap"
         )
-    return cells, outer
-
-
-def _warn_of_seams(mesh, cells, outer, distance, warn):
-    """Warns of nodes that coincide up to rounding, where the body is not connected.
-
-    Two nodes of the same element do not count: the element is that thin.
-    """
-    from scipy.spatial import cKDTree  # takes long to load
-
-    pairs = outer[cKDTree(mesh.points[outer]).query_pairs(distance, output_type="ndarray")]
-    if not len(pairs):
-        return
-    near = np.isin(cells, pairs)
-    some = cells[near.any(axis=1)]
-    joined = [(some == a).any(axis=1) & (some == b).any(axis=1) for a, b in pairs[:100]]
-    apart = [pair for pair, same in zip(pairs, joined) if not same.any()]
-    if apart:
-        number = len(np.unique(pairs[:, 1])) if len(apart) == len(joined) else len(apart)
-        gap = np.linalg.norm(mesh.points[apart[0][0]] - mesh.points[apart[0][1]])
-        first, second = (mesh.listed([mesh.node_ids[n]]) for n in apart[0])
-        how = "coincident with another" if gap == 0 else f"within {distance:.2g} m of another"
-        warn(
-            f"{_count(number, 'node')} {how}, such as {first} and {second}: "
-            "the body is not connected there"
-        )
+    return cells
 
 
 def _reject(mesh, path, ids, total, rule):

@@ -17,8 +17,7 @@ def classify(points, cells):
 
 
 def overlap(cells):
-    """(two cells that do not lie on opposite sides of their common face, or None; the nodes of
-    faces of one cell only).
+    """Two cells that do not lie on opposite sides of their common face, or None.
 
     cells: (m, 8), each of them RIGHT. Cells on opposite sides of a face list its nodes in opposite
     directions.
@@ -35,9 +34,7 @@ def overlap(cells):
     third = np.zeros_like(same_nodes)
     third[1:] = same_nodes[1:] & same_nodes[:-1]
     wrong = third | (same_nodes & (~same_edges | (turned[1:] == turned[:-1])))
-    alone = ~(np.append(same_nodes, False) | np.insert(same_nodes, 0, False))
-    outer = np.unique(ordered[alone])
     if not wrong.any():
-        return None, outer
+        return None
     at = int(np.flatnonzero(wrong)[0])
-    return tuple(int(face) // 6 for face in order[at : at + 2]), outer
+    return tuple(int(face) // 6 for face in order[at : at + 2])

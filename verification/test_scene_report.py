@@ -117,6 +117,17 @@ def test_a_seam_is_warned_of_and_each_part_is_held_or_named(tmp_path, gap):
     assert "nothing holds 1 of 2 elements around (0.05, 0.05, 0.15) m against every" in said
 
 
+def test_a_thin_element_is_no_seam(tmp_path):
+    """Two elements that share nodes; the upper one is 1e-7 times as high as it is wide."""
+    text = two_cubes(-0.1 + 1e-8).replace("\n2, 9, 10, 12, 11,", "\n2, 5, 6, 8, 7,")
+    (tmp_path / "thin.inp").write_text(text)
+    case = tmp_path / "thin.toml"
+    case.write_text(on_mesh("thin.inp").replace("[0.2, 0.2]", "[0.1, 0.1001]"))
+    outcome = sandglass("mesh", case, "-o", tmp_path / "out.h5", code=0)
+    assert "dropped 4 nodes of no hexahedron" in outcome.stderr
+    assert "lie at one place" not in outcome.stderr
+
+
 def box_mesh(rounded):
     """A box of 2 x 2 x 3 elements, .1 x .1 x .3 m, `rounded` at every other node of its top."""
     points = [(0.05 * i, 0.05 * j, 0.1 * k) for k in range(4) for j in range(3) for i in range(3)]
@@ -199,3 +210,7 @@ def test_units_that_do_not_fit_are_warned_of(tmp_path):
     )
     outcome = sandglass("run", case)
     assert "note: a body of 100 m with a Young's modulus of 3 kPa" in outcome.stdout
+    (tmp_path / "large.inp").write_text(two_cubes(0).replace("0.1", "100.0").replace("0.2", "200.0"))
+    case.write_text(on_mesh("large.inp").replace("[0.2, 0.2]", "[100, 200]"))
+    outcome = sandglass("mesh", case, "-o", tmp_path / "out.h5", code=0)
+    assert "the mesh is 200 m long, and files are read in m: if it is in mm, mu" in outcome.stderr

@@ -147,9 +147,6 @@ def test_instances_are_placed_and_keep_their_sets(tmp_path, capsys):
 
 
 def test_messages_name_the_instance(tmp_path, capsys):
-    text = ASSEMBLY.replace("0., 0., 3.\n0.", "0., 0., 1.\n0.").replace(", 4., 90.", ", 4., 0.")
-    *_, warnings = read_text(tmp_path, capsys, text)
-    assert "4 nodes coincident with another, such as Low.5 and High.1: the body" in warnings
     with pytest.raises(Refused, match=":38: set 'Both' names node 99 of 'High', which does not"):
         read_text(tmp_path, capsys, ASSEMBLY.replace("High.1\n", "High.99\n"))
 

@@ -90,35 +90,9 @@ def test_a_third_element_on_a_face_is_refused(tmp_path, capsys):
         read(capsys, write(tmp_path / "a.vtu", points, cells))
 
 
-def test_nodes_at_one_place_are_told(tmp_path, capsys):
-    points = np.vstack([POINTS, POINTS[4:8]])
-    cells = [CELLS[0], [12, 13, 14, 15, 8, 9, 10, 11]]
-    found, _, _, warnings = read(capsys, write(tmp_path / "a.vtu", points, cells))
-    assert len(found) == 16
-    assert "4 nodes coincident with another, such as 4 and 12: the body is not" in warnings
-
-
-def test_a_seam_of_rounding_is_told_and_a_thin_element_is_none(tmp_path, capsys):
-    points = np.vstack([POINTS, POINTS[4:8] + [0, 0, 1e-7]])
-    cells = [CELLS[0], [12, 13, 14, 15, 8, 9, 10, 11]]
-    *_, warnings = read(capsys, write(tmp_path / "a.vtu", points, cells))
-    assert "4 nodes within 2.4e-06 m of another, such as 4 and 12: the body is not" in warnings
-    points = POINTS.copy()
-    points[8:, 2] = 1 + 1e-7
-    *_, warnings = read(capsys, write(tmp_path / "a.vtu", points))
-    assert not warnings
-
-
 def test_flat_elements_are_refused(tmp_path, capsys):
     with pytest.raises(Refused, match="2 of 2 elements are tangled"):
         read(capsys, write(tmp_path / "a.vtu", POINTS * [1, 1, 0]))
-
-
-def test_a_mesh_in_millimetres_is_told(tmp_path, capsys):
-    *_, warnings = read(capsys, write(tmp_path / "a.vtu", 20 * POINTS))
-    assert "the mesh is 49 m across: coordinates are read as metres" in warnings
-    *_, warnings = read(capsys, write(tmp_path / "a.vtu", 8 * POINTS))  # 19.6 m
-    assert not warnings
 
 
 def test_ids_of_the_file_are_told(tmp_path, capsys):
