@@ -1,4 +1,4 @@
-"""Reads Abaqus and CalculiX input files (.inp): the mesh and its sets.
+"""Reads Abaqus and CalculiX input files (.inp): the mesh, its sets and its surfaces.
 
 meshio is not used: it ends a list of nodes at a comment, lets a second *NODE, or a second *NSET of
 the same name, replace the first, drops sets made of sets, mixes up the blocks of element sets, and
@@ -14,6 +14,7 @@ from exchange.abaqus_sets import NONE, Part, Resolver
 from exchange.foreign_mesh import HEXAHEDRON, SCOPE, Block, ForeignMesh, content
 
 GENERATING = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM")
+AS_NSET = "; list its nodes as *NSET if the case needs them"
 VOLUME = re.compile(r"(A?C|D?C|Q|G|GK|COH|E)3D\d|SC[68]R|CSS8|C3D")
 BRICK = re.compile(r"C3D8[A-Z]*")
 # The digits of a type are the number of its nodes, except those of beams and of one shell.
@@ -23,7 +24,8 @@ EXCEPTIONS = {"21": 2, "22": 3, "23": 2, "31": 2, "32": 3, "33": 2, "65": 6}
 
 def read(path):
     """The ForeignMesh of an .inp file: sets of nodes and of elements become node sets, those of
-    elements element sets as well; of the same name in the same part, the set of nodes counts.
+    elements element sets as well; of the same name in the same part, the set of nodes counts. The
+    nodes of a surface are a set, too.
 
     Parts are read where *INSTANCE places them. As in Abaqus, names are not case-sensitive; the
     first spelling is kept. Raises InputError naming the line.
@@ -72,14 +74,14 @@ _PLAIN = str.maketrans("", "", "0123456789+-.eE, \t")
 
 
 def _separated(text):
-    """Whether no two numbers lack a comma between them."""
-    return not re.search(r"[^\s,][ \t]+[^\s,]", text)
+    """Whether one comma is between any two numbers."""
+    return not re.search(r"[^\s,][ \t]+[^\s,]|,\s*,", text)
 
 
 class _Reader:
     def __init__(self):
         self.model = self.part = Part("")
-        self.parts, self.instances = {}, []
+        self.parts, self.instances, self.notes = {}, [], []
         self.assembly = Part("Assembly")
 
     def read(self, path, depth, before):
@@ -146,17 +148,27 @@ class _Reader:
         if options.get("SYSTEM", "R").upper() != "R":
             raise InputError(f"{where}: *NODE, SYSTEM: rectangular coordinates are required")
         table, ends = data.numbers(float, _real)
-        if (np.diff(ends, prepend=0) == 4).all() and (table[::4] == table[::4].astype(int)).all():
+        whole = (table[::4] == np.round(table[::4])) & (abs(table[::4]) < 2**53)
+        if (np.diff(ends, prepend=0) == 4).all() and whole.all():
             table = table.reshape(-1, 4)
             ids, points = table[:, 0].astype(np.int64), table[:, 1:]
         else:
             ids, points = [], []
+            short = []
             for place, fields in data.fields():
-                if not 3 <= len(fields) <= 7:
-                    raise InputError(f"{place}: a node needs an id and three coordinates")
+                while len(fields) > 4 and not fields[-1]:
+                    fields.pop()
+                if len(fields) not in (3, 4, 7) or fields[:3].count(""):
+                    raise InputError(
+                        f"{place}: {', '.join(fields)!r}: a node needs an id and three coordinates"
+                    )
+                short += [place] if len(fields) == 3 or not fields[3] else []
                 ids.append(_whole(place, fields[0]))
                 xyz = [_real(place, field) for field in fields[1:4]]
                 points.append(xyz + [0.0] * (3 - len(xyz)))
+            if short:
+                rule = "fewer than three coordinates; the others are 0"
+                self.notes.append(f"{short[0]}: {len(short)} nodes have {rule}")
         self.part.ids.append(np.array(ids, dtype=np.int64))
         self.part.points.append(np.array(points).reshape(-1, 3))
         if name := options.get("NSET"):
@@ -210,7 +222,10 @@ class _Reader:
         if kind == "NSET" and options.get("ELSET"):
             self.part.add(kind, name, where, ("ELSET", options["ELSET"]), instance=instance)
         for place, fields in data.fields():
-            fields = [field for field in fields if field]
+            while fields and not fields[-1]:
+                fields.pop()
+            if "" in fields:
+                raise InputError(f"{place}: *{kind}: a member is missing between two commas")
             if "GENERATE" in options:
                 ends = [_whole(place, field) for field in fields]
                 step = ends[2] if len(ends) == 3 else 1
@@ -227,6 +242,21 @@ class _Reader:
 
     def _read_elset(self, options, data, where):
         self._read_nset(options, data, where, "ELSET")
+
+    def _read_surface(self, options, data, where):
+        """Surfaces of nodes and of elements; others stay without entries, which is a note."""
+        name, kind = options.get("NAME"), options.get("TYPE", "ELEMENT").upper()
+        if not name:
+            raise InputError(f"{where}: *SURFACE needs a name: NAME=")
+        if kind not in ("NODE", "ELEMENT") or "COMBINE" in options:
+            rule = "only TYPE=NODE and TYPE=ELEMENT without COMBINE are read"
+            self.notes.append(f"{where}: surface '{name}': {rule}{AS_NSET}")
+            return
+        self.part.add("SURFACE", name, where)
+        for place, (target, *more) in data.fields():
+            label = more[0].upper() if more and kind == "ELEMENT" else kind.removeprefix("ELEMENT")
+            entry = np.array([_whole(place, target)]) if target.isdigit() else target
+            self.part.add("SURFACE", name, place, (label, entry))
 
     def mesh(self, path):
         """The ForeignMesh. Raises InputError where a set names what does not exist."""
@@ -262,6 +292,13 @@ class _Reader:
                     sets[part.name, name] = resolver.nodes_of(found)
             for key in part.sets["NSET"]:
                 sets[part.name, spelled[key]] = resolver.members(part, "NSET", key, path)
+            for key, (name, _) in part.sets["SURFACE"].items():
+                nodes, why = resolver.surface(part, key)
+                scope = f"{part.name}.Surface" if part.name else "Surface"
+                if why:
+                    self.notes.append(why + AS_NSET)
+                else:
+                    sets[scope, name] = nodes
         names = [] if single else [part.name for part in spaces]
         return ForeignMesh(
             np.concatenate(ids),
@@ -270,6 +307,7 @@ class _Reader:
             sets,
             element_sets=element_sets,
             scopes=names,
+            notes=self.notes,
         )
 
 

@@ -3,8 +3,11 @@
 import numpy as np
 
 from common.errors import InputError
+from common.hexahedron import FACES, boundary_faces
+from exchange.foreign_mesh import HEXAHEDRON
 
 NONE = np.empty(0, dtype=np.int64)
+SIDES = ["S1", "S2", "S3", "S4", "S5", "S6"]  # of a hexahedron, in the order of FACES
 
 
 class Part:
@@ -12,11 +15,12 @@ class Part:
 
     sets: NSET or ELSET -> name in capitals -> (spelling, [(place, instance, entry)]); an entry is
     an array of numbers, a range, another set's name, or ("ELSET", name) for the nodes of elements.
+    Of a SURFACE, an entry is (label, entry), with "NODE" or the name of a face as the label.
     """
 
     def __init__(self, name):
         self.name, self.ids, self.points, self.blocks = name, [], [], []
-        self.sets = {"NSET": {}, "ELSET": {}}
+        self.sets = {"NSET": {}, "ELSET": {}, "SURFACE": {}}
 
     def add(self, kind, name, place, *entries, instance=""):
         """Adds entries to a set; several keywords may contribute to the same set."""
@@ -79,6 +83,51 @@ class Resolver:
                 f"{place}: set '{spelled}' names {what} {missing[0]}{where}, which does not exist"
             )
         return entry + self.first.get(id(own), 0)
+
+    def surface(self, part, key):
+        """(sorted nodes of a surface, ""), or (None, why it is not read)."""
+        spelled, entries = part.sets["SURFACE"][key]
+        found = [NONE]
+        for place, instance, (label, entry) in entries:
+            nodes = label == "NODE"
+            members = self._entry(
+                part, "NSET" if nodes else "ELSET", spelled, place, instance, entry
+            )
+            if nodes:
+                found.append(members)
+            else:
+                found += self._faces(members, label)
+            if found[-1] is None:
+                what = f"face {label} of such elements" if label else "a surface without faces"
+                return None, f"{place}: surface '{spelled}': {what} is not read"
+        return np.unique(np.concatenate(found)), ""
+
+    def _faces(self, elements, label):
+        """Nodes of the faces of elements with a label; without one, of all that are outside. The
+        last entry is None where elements have no such face."""
+        for block, base in self.blocks:
+            inside = np.isin(block.ids + base, elements)
+            nodes = block.nodes[inside] + base
+            if not inside.any():
+                continue
+            if block.dimension < 3 and label in ("SPOS", "SNEG", ""):
+                yield nodes.ravel()
+            elif block.kind == HEXAHEDRON and label in SIDES:
+                yield nodes[:, FACES[SIDES.index(label)]].ravel()
+            elif block.kind == HEXAHEDRON and not label:
+                yield self._outside(nodes[:, FACES].reshape(-1, 4))
+            else:
+                yield None
+                return
+
+    def _outside(self, faces):
+        """The nodes of those faces that belong to one hexahedron only."""
+        cells = [b.nodes + base for b, base in self.blocks if b.kind == HEXAHEDRON]
+        every = np.concatenate([boundary_faces(np.concatenate(cells)), faces])
+        _, first, count = np.unique(
+            np.sort(every, axis=1), axis=0, return_index=True, return_counts=True
+        )
+        return every[first[count > 1]].ravel()
 
     def nodes_of(self, elements):
         """The sorted nodes of elements."""

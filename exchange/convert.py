@@ -31,7 +31,8 @@ except ImportError as error:
     print(f"{error.name} is not installed; files of other programs need packages {PACKAGES}")
     sys.exit(2)
 
-MESHES = {".msh": gmsh_file.read, ".inp": abaqus_file.read, ".vtu": vtu_file.read}
+MESHES = {".msh": gmsh_file.read, ".inp": abaqus_file.read}
+MESHES |= {".vtu": vtu_file.read, ".vtk": vtu_file.read}
 # A segmentation: each voxel with a label is an element.
 IMAGES = {
     ".npy": image_file.read_npy,
@@ -48,6 +49,7 @@ DISPLACEMENTS = {
     ".log": lambda path, field, warn: (None, *text_results.read_febio(path)),
     ".state": lambda path, field, warn: (None, None, text_results.read_sofa(path)),
     ".txt": lambda path, field, warn: (None, None, text_results.read_niftysim(path)),
+    ".vtk": lambda path, field, warn: _at_points(vtu_file.read_displacement(path, field)),
     ".vtu": lambda path, field, warn: _at_points(vtu_file.read_displacement(path, field)),
 }
 

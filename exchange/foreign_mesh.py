@@ -30,7 +30,7 @@ class ForeignMesh:
     The scope of a name is an instance, the assembly, or the dimension of a group; "" without any.
     hint: how to make and save hexahedra with the program, for messages. element_sets: the same for
     ids of elements; those of hexahedra count. scopes: names of the instances that number their
-    nodes and elements from i SCOPE on.
+    nodes and elements from i SCOPE on. notes: what was not read, as warnings.
     """
 
     node_ids: np.ndarray
@@ -40,6 +40,7 @@ class ForeignMesh:
     hint: str = ""
     element_sets: dict = field(default_factory=dict)
     scopes: list = field(default_factory=list)
+    notes: list = field(default_factory=list)
 
     def listed(self, ids):
         """The first few numbers of nodes or elements, as the file has them."""
@@ -69,6 +70,8 @@ def to_hexahedra(mesh, path, warn):
     path: for messages. warn: called with the text of each warning. Elements of lower dimension
     serve only to define sets. Returns a HexMesh in the order of the file. Raises InputError.
     """
+    for note in mesh.notes:
+        warn(note)
     order = _checked_nodes(mesh, path)
     block = _hexahedra(mesh, path)
     cells = _rows(mesh, order, block, path)
@@ -94,7 +97,9 @@ def to_hexahedra(mesh, path, warn):
     element_sets = {
         key: np.flatnonzero(np.isin(block.ids, ids)) for key, ids in mesh.element_sets.items()
     }
-    return HexMesh(mesh.points[used], rank[cells], _named(sets, path, warn), _named(element_sets, path))
+    return HexMesh(
+        mesh.points[used], rank[cells], _named(sets, path, warn), _named(element_sets, path)
+    )
 
 
 def _named(sets, path, warn=lambda text: None):
@@ -110,7 +115,7 @@ def _named(sets, path, warn=lambda text: None):
     for name, some in alike.items():
         same = all(np.array_equal(some[0][1], members) for _, members in some)
         for scope, members in some[:1] if same else some:
-            full = name if same else f"{scope}.{name}"
+            full = name if same else f"{scope or 'Set'}.{name}"
             plain = full.replace("/", "_")
             if plain in named:
                 raise InputError(f"{path}: two sets are named '{plain}'; names must differ")

@@ -60,7 +60,7 @@ def read(path):
             f"{path}: version {version} of .msh; allowed are 2.2 and 4.1: "
             "gmsh OLD.msh -save -format msh41 -o NEW.msh"
         )
-    names = _names(path, sections.get("PhysicalNames", b""))
+    names = _names(path, sections.get("PhysicalNames", _Section()))
     order = _byte_order(path, sections["MeshFormat"]) if binary else None
 
     def numbers(section):
@@ -75,39 +75,68 @@ class _Numbers:
     """The numbers of a section, one after the other, of text or bytes."""
 
     def __init__(self, path, section, data, order, size):
-        self.where = f"{path}: ${section}"
+        self.path, self.section, self.first = path, section, data.first
         self.order, self.position = order, 0
         self.data = data if order else data.split()
+        self.text = b"" if order else data
         self.size = "i8" if size == b"8" else "i4"
+
+    def wrong(self, reason):
+        """The InputError of this reason, with the line of a text."""
+        line = self.first + 1
+        left = self.position
+        for row in self.text.splitlines()[:-1]:
+            left -= len(row.split())
+            if left < 0:
+                break
+            line += 1
+        line = "" if self.order else f":{line}"
+        return InputError(f"{self.path}{line}: ${self.section} {reason}")
 
     def take(self, count, kind="i4"):
         """The next numbers (count,): of an int, of "size" or of "f8". Raises InputError."""
-        kind = self.size if kind == "size" else kind
+        kind, count = self.size if kind == "size" else kind, int(count)
         if not 0 <= count <= len(self.data):
-            raise InputError(f"{self.where} announces {count} numbers, more than it holds")
-        if self.order:
-            end = self.position + count * int(kind[1])
-            found = self.data[self.position : end]
-        else:
-            end = self.position + count
-            found = self.data[self.position : end]
+            raise self.wrong(f"announces {count} numbers, more than it holds")
+        end = self.position + count * (int(kind[1]) if self.order else 1)
+        found = self.data[self.position : end]
         if end > len(self.data):
-            raise InputError(f"{self.where} ends too early: it is cut off or damaged")
+            raise self.wrong("ends too early: it is cut off or damaged")
         self.position = end
         if self.order:
             return np.frombuffer(found, self.order + kind).astype(kind)
         try:
             return np.array(found, dtype="S").astype("i8" if kind[0] == "i" else kind)
-        except (ValueError, OverflowError) as error:
-            raise InputError(f"{self.where} contains an invalid number: {error}") from error
+        except (ValueError, OverflowError):
+            self.position -= count
+            for word in found:  # to the one that is wrong
+                try:
+                    (int if kind[0] == "i" else float)(word)
+                except ValueError:
+                    break
+                self.position += 1
+            what = "a whole number" if kind[0] == "i" else "a number"
+            raise self.wrong(f"contains {word.decode('ascii', 'replace')!r}, not {what}") from None
+
+    def end(self, count, announced, things):
+        """Raises InputError unless as many things were read as announced, and nothing is left."""
+        if count != announced:
+            raise self.wrong(f"announces {announced} {things}, but holds {count}")
+        left = self.data[self.position :]
+        if left.strip() if self.order else left:
+            raise self.wrong(f"does not end behind its {announced} {things}")
 
     def kind(self, number):
         """The entry of KINDS for Gmsh's number. Raises InputError."""
         if number not in KINDS:
-            raise InputError(
-                f"{self.where} has elements of Gmsh's type {number}, which is unknown here"
-            )
+            raise self.wrong(f"has elements of Gmsh's type {number}, which is unknown here")
         return KINDS[number]
+
+
+class _Section(bytes):
+    """The content of a section; first: the line of its name."""
+
+    first = 0
 
 
 def _sections(path, data):
@@ -115,10 +144,12 @@ def _sections(path, data):
     sections, position = {}, 0
     while begin := re.compile(rb"^\$(\w+)[ \t]*\r?\n", re.MULTILINE).search(data, position):
         end = data.find(b"$End" + begin[1], begin.end())
-        name = begin[1].decode("ascii", "replace")
+        name, line = begin[1].decode("ascii", "replace"), data.count(b"\n", 0, begin.start()) + 1
         if end < 0:
-            raise InputError(f"{path}: ${name} has no $End{name}: the file is cut off or damaged")
-        sections[name] = data[begin.end() : end]
+            rule = f"${name} has no $End{name}: the file is cut off or damaged"
+            raise InputError(f"{path}:{line}: {rule}")
+        sections[name] = _Section(data[begin.end() : end])
+        sections[name].first = line
         position = end + 4 + len(begin[1])
     return sections
 
@@ -133,13 +164,16 @@ def _byte_order(path, header):
 
 def _names(path, section):
     """(dimension, tag) -> name of the physical groups. Raises InputError."""
-    names = {}
-    for line in section.decode("utf-8", "replace").splitlines()[1:]:
-        entry = re.fullmatch(r'\s*([0-3])\s+(-?\d+)\s+"(.+)"\s*', line)
+    names, lines = {}, section.decode("utf-8", "replace").splitlines()
+    for number, line in enumerate(lines[1:], section.first + 2):
+        entry = re.fullmatch(r'\s*([0-3])\s+(-?\d+)\s+"([^"]+)"\s*', line)
         if not entry:
-            raise InputError(f"{path}: $PhysicalNames: {line!r}: dimension, tag, name are required")
-        group = int(entry[1]), int(entry[2])
-        names[group] = entry[3]
+            rule = 'dimension, tag and "name" are required'
+            raise InputError(f"{path}:{number}: $PhysicalNames: {line!r}: {rule}")
+        names[int(entry[1]), int(entry[2])] = entry[3]
+    if lines and lines[0].strip() != str(len(names)):
+        rule = f"{lines[0].strip()[:20]!r} names are announced, but {len(names)} given"
+        raise InputError(f"{path}:{section.first + 1}: $PhysicalNames: {rule}")
     return names
 
 
@@ -180,17 +214,19 @@ def _read_2(numbers, names):
         count = _line(nodes)
         record = np.dtype([("id", nodes.order + "i4"), ("x", nodes.order + "f8", 3)])
         if nodes.position + count * record.itemsize > len(nodes.data):
-            raise InputError(f"{nodes.where} ends too early: it is cut off or damaged")
+            raise nodes.wrong("ends too early: it is cut off or damaged")
         table = np.frombuffer(nodes.data, record, count, nodes.position)
+        nodes.position += table.nbytes
         ids, points = table["id"], table["x"].astype(float)
     else:
         count = int(nodes.take(1)[0])
         table = nodes.take(4 * count, "f8").reshape(-1, 4)
         ids, points = table[:, 0], table[:, 1:]
         if not (ids == np.round(ids)).all():
-            raise InputError(f"{nodes.where} has a node whose id is not a whole number")
+            raise nodes.wrong("has a node whose id is not a whole number")
+    nodes.end(len(ids), count, "nodes")
     source = numbers("Elements")
-    left = _line(source) if binary else int(source.take(1)[0])
+    announced = left = _line(source) if binary else int(source.take(1)[0])
     found = {}  # (kind, tag of the group) -> rows of id and nodes; ids of repetitions are not kept
     known = {}
     while left > 0:
@@ -204,12 +240,13 @@ def _read_2(numbers, names):
             rest = source.take(int(n_tags) + kind[2])
             rows = np.concatenate([[element], rest])[None, :]
         if several < 1:
-            raise InputError(f"{source.where} has a block of {several} elements")
+            raise source.wrong(f"has a block of {several} elements")
         left -= int(several)
         for row in rows.tolist():
             corners = tuple(row[1 + n_tags :])
             first = known.setdefault((kind, corners), row[0])
             found.setdefault((kind, row[1] if n_tags else 0), []).append((first, *corners))
+    source.end(announced - left, announced, "elements")
     for (kind, tag), rows in found.items():
         table = np.array(rows, dtype=np.int64)
         elements.add(kind, table[:, 0], table[:, 1:], [tag])
@@ -220,7 +257,7 @@ def _line(numbers):
     """The number on the line of text before binary data."""
     text, _, _ = numbers.data[:32].partition(b"\n")
     if not text.strip().isdigit():
-        raise InputError(f"{numbers.where} must begin with a number: {text!r}")
+        raise numbers.wrong(f"must begin with a number: {text!r}")
     numbers.position = len(text) + 1
     return int(text)
 
@@ -230,20 +267,25 @@ def _read_4(numbers, names, has_entities):
     groups = _groups_of_entities(numbers("Entities")) if has_entities else {}
     source, elements = numbers("Nodes"), _Elements(names)
     ids, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
-    for _ in range(source.take(4, "size")[0]):
+    n_blocks, n_nodes, _, _ = source.take(4, "size")
+    for _ in range(n_blocks):
         dimension, _, parametric = source.take(3)
         (count,) = source.take(1, "size")
         ids.append(source.take(count, "size"))
         width = 3 + (dimension if parametric else 0)
         points.append(source.take(width * count, "f8").reshape(count, width)[:, :3])
-    source = numbers("Elements")
-    for _ in range(source.take(4, "size")[0]):
+    source.end(sum(map(len, ids)), n_nodes, "nodes")
+    source, n_found = numbers("Elements"), 0
+    n_blocks, n_elements, _, _ = source.take(4, "size")
+    for _ in range(n_blocks):
         dimension, entity, number = source.take(3)
         (count,) = source.take(1, "size")
         kind = source.kind(int(number))
         table = source.take(count * (1 + kind[2]), "size").reshape(count, 1 + kind[2])
         tags = groups.get((int(dimension), int(entity)), ())
         elements.add(kind, table[:, 0], table[:, 1:], tags)
+        n_found += count
+    source.end(n_found, n_elements, "elements")
     return elements.mesh(np.concatenate(ids), np.concatenate(points))
 
 

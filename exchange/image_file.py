@@ -34,15 +34,22 @@ def read_nifti(path, spacing):
         raise InputError(f"{path}: mesh.spacing was given, but the file's header has it")
     import nibabel  # imported only if needed, as few install it
 
+    nibabel.imageglobals.logger.level = 100  # faults are refused, not printed
     try:
-        image = nibabel.load(path)
+        with nibabel.imageglobals.ErrorLevel(30):  # and not repaired
+            image = nibabel.load(path)
         labels, affine = np.asanyarray(image.dataobj), image.affine
         unit = {"meter": 1.0, "micron": 1e-6}.get(image.header.get_xyzt_units()[0], MILLIMETRES)
     except Exception as error:  # a library may fail in any way on a damaged file
         raise InputError(f"{path}: cannot be read as NIfTI: {error}") from error
     # The affine map places the middle of voxel (i, j, k) at (i, j, k).
     map_, origin = unit * affine[:3, :3], unit * affine[:3, 3]
-    return _voxels(path, labels, map_, origin - map_ @ (0.5, 0.5, 0.5))
+    mesh = _voxels(path, labels, map_, origin - map_ @ (0.5, 0.5, 0.5))
+    size = image.dataobj.offset + labels.size * image.get_data_dtype().itemsize
+    if path.suffix.lower() == ".nii" and (left := path.stat().st_size - size):
+        shape = " x ".join(map(str, labels.shape))
+        mesh.notes.append(f"{left} bytes follow its {shape} voxels: does the header fit the file?")
+    return mesh
 
 
 def _voxels(path, labels, map_, origin):

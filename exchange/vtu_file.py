@@ -1,10 +1,11 @@
-"""Reads meshes and displacements from VTK's unstructured grids (.vtu); writes them and XDMF."""
+"""Reads meshes and displacements from VTK's grids (.vtu, .vtk); writes .vtu and XDMF."""
 
 import numpy as np
 
 from common.errors import InputError
 from common.hexahedron import LEXICOGRAPHIC
 from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
+from exchange.vtk_reader import LegacyGrid
 from exchange.vtu_reader import Grid
 
 # VTK's number of a cell: name, dimension; others count as volumes, which are refused.
@@ -33,13 +34,13 @@ DISPLACEMENTS = ("displacement", "displacements", "u", "disp")
 
 
 def read(path):
-    """The ForeignMesh of a .vtu file; ids count from 0. Raises InputError.
+    """The ForeignMesh of a .vtu or .vtk file; ids count from 0. Raises InputError.
 
     Integer point arrays with values 0 and 1 define node sets: 1 marks the nodes of the set.
     Likewise, integer cell arrays define element sets; one with other values (labels) defines a set
     NAME-LABEL for each.
     """
-    grid = Grid(path)
+    grid = _grid(path)
     sizes, starts = np.diff(grid.offsets, prepend=0), np.append(0, grid.offsets)[:-1]
     blocks = []
     for number in np.unique(grid.types).tolist():
@@ -65,6 +66,10 @@ def read(path):
     return ForeignMesh(ids, grid.points, blocks, sets, element_sets=element_sets)
 
 
+def _grid(path):
+    return (LegacyGrid if path.suffix.lower() == ".vtk" else Grid)(path)
+
+
 def _labelled(name, data):
     """The element sets of an integer cell array."""
     labels = np.unique(data)
@@ -76,12 +81,12 @@ def _labelled(name, data):
 
 
 def read_displacement(path, field):
-    """(points (n, 3), displacement (n, 3)), m, of a .vtu file.
+    """(points (n, 3), displacement (n, 3)), m, of a .vtu or .vtk file.
 
     field: name of the point array; None means one of DISPLACEMENTS, which is not case-sensitive.
     Raises InputError.
     """
-    grid = Grid(path)
+    grid = _grid(path)
     vectors = {n: d for n, d in grid.point_data.items() if d.ndim == 2 and d.shape[1] == 3}
     wanted = [field] if field else [n for n in vectors if n.lower() in DISPLACEMENTS]
     if len(wanted) != 1 or wanted[0] not in vectors:

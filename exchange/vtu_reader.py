@@ -39,6 +39,11 @@ class Grid:
             root = ElementTree.fromstring(data)
         except (ElementTree.ParseError, ValueError, LookupError) as error:
             raise self.wrong(error) from error
+        # Lines of arrays, for messages: the parser does not keep them.
+        starts = [
+            data.count(b"\n", 0, at.start()) + 1 for at in re.finditer(rb"<DataArray\b", data)
+        ]
+        self.lines = dict(zip(root.iter("DataArray"), starts))
         grid = root.find("UnstructuredGrid")
         if root.tag != "VTKFile" or grid is None:
             kind = root.get("type", root.tag)
@@ -54,9 +59,10 @@ class Grid:
             raise InputError(f"{path}: has {len(pieces)} pieces; one is required")
         self.read(pieces[0])
 
-    def wrong(self, reason):
-        """The InputError of this reason."""
-        return InputError(f"{self.path}: cannot be read as a .vtu grid: {reason}")
+    def wrong(self, reason, element=None):
+        """The InputError of this reason, with the line of an array."""
+        line = f":{self.lines[element]}" if element is not None else ""
+        return InputError(f"{self.path}{line}: cannot be read as a .vtu grid: {reason}")
 
     def read(self, piece):
         """Reads the arrays of the only piece."""
@@ -68,19 +74,27 @@ class Grid:
         for name in ("connectivity", "offsets", "types"):
             if cells.get(name, np.empty(0, "f")).dtype.kind == "f":
                 raise self.wrong(f"<Cells> needs an integer array '{name}'")
-        self.connectivity, self.offsets, self.types = (
-            cells[name].astype(np.int64).ravel() for name in ("connectivity", "offsets", "types")
-        )
+            setattr(self, name, cells[name])
         if len(points) != 1 or next(iter(points.values())).shape != (n_points, 3):
             raise self.wrong(f"<Points> needs one array of {n_points} points, of 3 components")
         self.points = next(iter(points.values())).astype(float)
+        self.check(n_cells)
+        self.point_data = self.arrays(piece, "PointData", n_points)
+        self.cell_data = self.arrays(piece, "CellData", n_cells)
+
+    def check(self, n_cells):
+        """Raises InputError unless the cells are consistent."""
+        self.connectivity, self.offsets, self.types = (
+            values.astype(np.int64).ravel()
+            for values in (self.connectivity, self.offsets, self.types)
+        )
         if len(self.offsets) != n_cells or len(self.types) != n_cells:
-            raise self.wrong(f"offsets and types must have NumberOfCells = {n_cells} values")
+            raise self.wrong(
+                f"{len(self.offsets)} cells and {len(self.types)} types; {n_cells} are required"
+            )
         sizes = np.diff(self.offsets, prepend=0)
         if (sizes < 0).any() or sizes.sum() != len(self.connectivity):
             raise self.wrong("offsets must increase to the length of connectivity")
-        self.point_data = self.arrays(piece, "PointData", n_points)
-        self.cell_data = self.arrays(piece, "CellData", n_cells)
 
     def arrays(self, piece, section, rows):
         """name -> array (rows,) or (rows, components) of a section; any rows if None."""
@@ -90,18 +104,20 @@ class Grid:
             if element.get("type") == "String":
                 continue
             if name in found:
-                raise self.wrong(f"two arrays of <{section}> are named '{name}'")
+                raise self.wrong(f"two arrays of <{section}> are named '{name}'", element)
             try:
                 width = int(element.get("NumberOfComponents", "1"))
             except ValueError:
                 width = 0
             if width < 0:
-                raise self.wrong(f"array '{name}': NumberOfComponents must be a whole number")
+                rule = "NumberOfComponents must be a whole number"
+                raise self.wrong(f"array '{name}': {rule}", element)
             values = self.values(element, name)
             if width > 1 and len(values) % width == 0:
                 values = values.reshape(-1, width)
             if rows is not None and len(values) != rows:
-                raise self.wrong(f"array '{name}' has {len(values)} rows; {rows} are required")
+                rule = f"has {len(values)} rows; {rows} are required"
+                raise self.wrong(f"array '{name}' {rule}", element)
             found[name] = values
         return found
 
@@ -155,7 +171,7 @@ class Grid:
         except Exception as error:  # a library may fail in any way on damaged data
             if isinstance(error, MemoryError):
                 raise
-            raise self.wrong(f"array '{name}': {error}") from error
+            raise self.wrong(f"array '{name}': {error}", element) from error
 
     def bytes(self, data, raw):
         """The bytes of an array: a header of sizes, and what it announces."""

@@ -210,7 +210,3 @@ def test_units_that_do_not_fit_are_warned_of(tmp_path):
     )
     outcome = sandglass("run", case)
     assert "note: a body of 100 m with a Young's modulus of 3 kPa" in outcome.stdout
-    (tmp_path / "large.inp").write_text(two_cubes(0).replace("0.1", "100.0").replace("0.2", "200.0"))
-    case.write_text(on_mesh("large.inp").replace("[0.2, 0.2]", "[100, 200]"))
-    outcome = sandglass("mesh", case, "-o", tmp_path / "out.h5", code=0)
-    assert "the mesh is 200 m long, and files are read in m: if it is in mm, mu" in outcome.stderr

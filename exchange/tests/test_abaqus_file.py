@@ -8,7 +8,10 @@ from exchange import abaqus_writer
 from common.errors import InputError
 from exchange.foreign_mesh import HexMesh
 
-FIRST, SECOND = list(range(8)), list(range(4, 12))
+FIRST, SECOND, TOP = list(range(8)), list(range(4, 12)), list(range(8, 12))
+SKIN = {"a": [0, 1, 2, 3], "s": [0, 1, 2, 3]}
+# The nodes of the first cube on each of its sides, as in Abaqus's manual.
+SIDES = [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 4, 5], [1, 2, 5, 6], [2, 3, 6, 7], [0, 3, 4, 7]]
 
 
 def read_text(tmp_path, capsys, text):
@@ -66,13 +69,48 @@ def test_the_same_mesh_however_written(tmp_path, capsys, text):
         ("*NSET, NSET=Foot, GENERATE\n7, 900, 2\n", {"Foot": [6, 8, 10]}),
         ("*NSET, NSET=a\nFoot, 3\n*NSET, NSET=foot\n1\n", {"a": [0, 2], "foot": [0]}),
         ("*ELEMENT, TYPE=S8R, ELSET=skin\n9, 1, 2, 3, 4,\n5, 6, 7, 8\n", {"skin": FIRST}),
-        ("*NSET, NSET=Foot\n1\n*SURFACE, NAME=s\nFoot, S1\n", {"Foot": [0]}),
+        ("*SURFACE, NAME=s, TYPE=NODE\n3, 0.5\n12,\n", {"s": [2, 11]}),
+        ("*NSET, NSET=a\n1, 2\n*SURFACE, TYPE=NODE, NAME=s\nA\n", {"a": [0, 1], "s": [0, 1]}),
+        ("*SURFACE, NAME=s\ntissue, S1\n", {"s": [0, 1, 2, 3, 4, 5, 6, 7]}),
+        *((f"*SURFACE, NAME=s\n1, s{i}\n", {"s": s}) for i, s in enumerate(SIDES, 1)),
+        ("*SURFACE, NAME=s\n2,\n", {"s": list(range(4, 12))}),
+        ("*ELEMENT, TYPE=S4, ELSET=a\n9, 1, 2, 3, 4\n*SURFACE, NAME=s\na, SPOS\n", SKIN),
+        # The set of all nodes of an element differs from its face of the same name.
+        ("*ELSET, ELSET=s\n2\n*SURFACE, NAME=s\ns, S2\n", {"Set.s": SECOND, "Surface.s": TOP}),
     ],
 )
 def test_sets(tmp_path, capsys, text, expected):
     _, _, sets, warnings = read_text(tmp_path, capsys, CUBES + text)
     del sets["tissue"]
     assert sets == expected and not warnings
+
+
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        (
+            "*SURFACE, NAME=s, TYPE=CUTTING SURFACE\n",
+            ":17: surface 's': only TYPE=NODE and TYPE=EL",
+        ),
+        ("*SURFACE, NAME=s, COMBINE=UNION\na, b\n", ":17: surface 's': only TYPE=NODE and TYPE=EL"),
+        ("*SURFACE, NAME=s\n1, SPOS\n", ":18: surface 's': face SPOS of such elements is not read"),
+        (
+            "*ELEMENT, TYPE=S4\n9, 1, 2, 3, 4\n*SURFACE, NAME=s\n9, E1\n",
+            ":20: surface 's': face E1",
+        ),
+    ],
+)
+def test_a_surface_that_is_not_read_is_warned_of(tmp_path, capsys, text, told):
+    _, _, sets, warnings = read_text(tmp_path, capsys, CUBES + text)
+    assert "s" not in sets and told in warnings
+    assert "; list its nodes as *NSET if the case needs them" in warnings
+
+
+def test_nodes_with_two_coordinates_are_warned_of(tmp_path, capsys):
+    text = CUBES.replace("1, 0., 0., 0.", "1, 0., 0.").replace("2, 1., 0., 0.", "2, 1., 0.,")
+    points, *_, warnings = read_text(tmp_path, capsys, text)
+    assert (points == POINTS).all()
+    assert "cubes.inp:2: 2 nodes have fewer than three coordinates; the others are" in warnings
 
 
 def test_what_gmsh_writes(tmp_path, capsys):
@@ -167,7 +205,15 @@ def test_messages_name_the_instance(tmp_path, capsys):
         (CUBES.replace("2, 5, 6, 7,", "2, 5, 6,"), ":16: C3D8R needs an id and eight nodes"),
         (CUBES.replace("2, 5, 6, 7,", "2, 5, 6, x,"), ":16: 'x' must be a whole number"),
         (CUBES.replace("12, 0., 1.", "12, 0., l."), ":13: 'l.' must be a number"),
-        (CUBES.replace("12, 0., 1., 2.", "12"), ":13: a node needs an id and three coordinates"),
+        (
+            CUBES.replace("12, 0., 1., 2.", "12"),
+            ":13: '12': a node needs an id and three coordinates",
+        ),
+        (CUBES.replace("12, 0., 1., 2.", "12, 0., 1., 2., 3."), ":13: .*: a node needs an id"),
+        (CUBES.replace("12, 0., 1., 2.", "12, 0.,, 1., 2."), ":13: .*: a node needs an id and"),
+        (CUBES + "*NSET, NSET=Foot\n1,, 2\n", ":18: .NSET: a member is missing between two"),
+        (CUBES + "*SURFACE\n1, S1\n", ":17: .SURFACE needs a name: NAME="),
+        (CUBES + "*SURFACE, NAME=s\nup, S1\n", ":18: set 'up' of elements is not defined"),
         (CUBES.replace("12, 0., 1.", "12, 0., inf"), "finite; those of node 12 are not"),
         (CUBES.replace("12, 0., 1.", "-12, 0., 1."), "node -12: ids of nodes must not be negative"),
         (CUBES.replace("12, 0., 1.", "9223372036854775808, 0., 1."), "must be a whole number"),

@@ -140,6 +140,95 @@ def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys, opti
             assert "b.vtu" in str(told)
 
 
+def test_the_line_of_an_array_is_named(tmp_path, capsys):
+    text = write(tmp_path / "a.vtu", point_data=SETS, binary=False).read_text()
+    lines = text.splitlines()
+    at = next(i for i, line in enumerate(lines) if 'Name="ids"' in line)
+    lines[at + 3] = "2x"
+    (tmp_path / "a.vtu").write_text("\n".join(lines))
+    with pytest.raises(Refused, match=rf"a.vtu:{at + 1}: cannot .* array 'ids': invalid.*'2x'"):
+        read(capsys, tmp_path / "a.vtu")
+
+
+LEGACY = """\
+# vtk DataFile Version 3.0
+two cubes
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 12 float
+{}
+CELLS 2 18
+8 0 1 2 3 4 5 6 7
+8 4 5 6 7 8 9 10 11
+CELL_TYPES 2
+12
+12
+POINT_DATA 12
+SCALARS left%20foot int
+LOOKUP_TABLE default
+1 1 1 1 0 0 0 0 0 0 0 0
+VECTORS u double
+{}
+CELL_DATA 2
+COLOR_SCALARS shade 1
+0.5
+0.5
+SCALARS label int
+3
+7
+"""
+LEGACY = LEGACY.format(*(" ".join(map(str, values.ravel())) for values in (POINTS, POINTS / 8)))
+
+
+def test_a_legacy_file(tmp_path, capsys):
+    """What generated.py lacks: labels, names with spaces, colours, no table, displacements."""
+    (tmp_path / "a.vtk").write_text(LEGACY)
+    points, cells, sets, warnings = read(capsys, tmp_path / "a.vtk")
+    assert (points == POINTS).all() and (cells == CELLS).all() and not warnings
+    assert sets == {"left foot": [0, 1, 2, 3]}
+    mesh = tmp_path / "converted.h5"
+    with h5py.File(mesh) as file:
+        assert {name: e[...].tolist() for name, e in file["mesh/element_sets"].items()} == {
+            "label-3": [0],
+            "label-7": [1],
+        }
+    answer = tmp_path / "u.h5"
+    run(capsys, "displacement", tmp_path / "a.vtk", mesh, answer, "--tolerance", "1e-6")
+    with h5py.File(answer) as file:
+        assert (file["displacement"][...] == POINTS / 8).all()
+
+
+@pytest.mark.parametrize(
+    "old, new, told",
+    [
+        ("# vtk", "# VTX", ":1: .* '# vtk DataFile Version N', a title, and ASCII or BINARY must"),
+        ("ASCII", "TEXT", "a title, and ASCII or BINARY must come first"),
+        ("UNSTRUCTURED_GRID", "POLYDATA", ":4: .*type POLYDATA; UNSTRUCTURED_GRID is required"),
+        ("POINTS 12", "POINTS 13", ":5: .*39 numbers are announced: .*'CELLS'"),
+        ("POINTS 12 float", "POINTS 12", ":5: .*'POINTS 12' is incomplete or damaged"),
+        ("POINTS 12 float", "POINTS 12 words", ":5: .*type 'words' is unknown"),
+        ("POINTS 12", "POINTS 12000000000000", ":5: .*announced, more than the file holds"),
+        ("CELLS 2 18", "CELLS 2 17", ":10: .*'11' is no keyword|:7: .*2 cells have 18 numbers"),
+        ("8 4 5", "7 4 5", ":7: .*2 cells have 17 numbers; 18 are announced"),
+        ("8 4 5", "-8 4 5", ":7: .*negative number of nodes"),
+        ("CELL_TYPES 2\n12\n12", "CELL_TYPES 1\n12", "2 cells and 1 types; 1 are required"),
+        ("POINT_DATA 12\n", "", ":14: .*array 'left foot' comes before POINT_DATA"),
+        ("SCALARS label int\n3\n7", "SCALARS label int\n3", ":23: .*2 numbers are .*cut off"),
+        ("VECTORS u", "VECTORS left%20foot", "two arrays are named 'left foot'"),
+        ("VECTORS u", "VEKTORS u", ":17: .*'VEKTORS' is no keyword of such a file"),
+        ("CELLS 2 18", "METADATA\n\nCELLS 2 18", None),
+    ],
+)
+def test_damage_of_a_legacy_file_is_named(tmp_path, capsys, old, new, told):
+    assert LEGACY.count(old) == 1 or old == "VECTORS u"
+    (tmp_path / "a.vtk").write_text(LEGACY.replace(old, new, 1))
+    if told is None:
+        assert len(read(capsys, tmp_path / "a.vtk")[0]) == 12
+        return
+    with pytest.raises(Refused, match="a.vtk" + told if told[0] == ":" else told):
+        read(capsys, tmp_path / "a.vtk")
+
+
 def mesh_file(path):
     with h5py.File(path, "w") as file:
         file["mesh/points"], file["mesh/cells"] = POINTS / 3, CELLS

@@ -17,6 +17,7 @@ from common.result_file import last_displacement, text_of
 FILE_MESH = '[mesh]\nfile = "{}"\n'
 GENERATED = BLOCK[BLOCK.index("[mesh]") : BLOCK.index("[material]")]
 SETS = BLOCK[BLOCK.index("[sets]") : BLOCK.index("[[displacement]]")]
+MASKS = {name: (POINTS[:, 2] == z).astype(int) for name, z in (("foot", 0), ("head", 2))}
 LARGEST = np.hypot(0.02, 0.01)  # of the displacements that BLOCK imposes, m
 
 
@@ -81,8 +82,7 @@ def test_rules_of_the_case_add_sets_to_those_of_the_file(block):
 
 def test_what_is_put_right_is_told_and_the_run_goes_on(tmp_path):
     mirrored = CELLS[:, [4, 5, 6, 7, 0, 1, 2, 3]]
-    masks = {name: (POINTS[:, 2] == z).astype(int) for name, z in (("foot", 0), ("head", 2))}
-    write(tmp_path / "own.vtu", POINTS / 20, mirrored, point_data=masks)
+    write(tmp_path / "own.vtu", POINTS / 20, mirrored, point_data=MASKS)
     done = sandglass("run", case_of(tmp_path, "own.vtu"), code=0)
     told = f"warning: {tmp_path}/own.vtu: 2 of 2 elements had a mirrored node order"
     assert done.stderr.startswith(told)
@@ -100,8 +100,8 @@ def test_files_that_are_no_mesh(tmp_path):
     (tmp_path / "own.geo").unlink()
     (tmp_path / "own.msh").write_bytes((DATA / "block-4.1.msh").read_bytes()[:1500])
     for command in ("run", "mesh"):
-        refused(command, case, *output, told="own.msh: $Nodes has no $EndNodes: the file is cut")
-    refused("verify", case, told="own.msh: $Nodes has no $EndNodes")
+        refused(command, case, *output, told="own.msh:43: $Nodes has no $EndNodes: the file is cut")
+    refused("verify", case, told="own.msh:43: $Nodes has no $EndNodes")
     tetrahedra = write(tmp_path / "own.vtu", cells=[[0, 1, 2, 4]], kind="tetra")
     case = case_of(tmp_path, tetrahedra.name)
     refused("run", case, *output, told="1 of type 'tetra', besides 0 hex")
@@ -141,17 +141,17 @@ def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
     [
         ("SANDGLASS_PYTHON", "/no/python3", "/no/python3: cannot be run: No such file or dir"),
         ("SANDGLASS_EXCHANGE", "/no/exchange", "/no/exchange/convert.py: is missing"),
-        ("PYTHONPATH", "scipy", "scipy is not installed; files of other programs need packages "),
+        ("PYTHONPATH", "meshio", "meshio is not installed; files of other programs need packages "),
         ("PYTHONPATH", "h5py", "h5py is not installed; files of other programs need packages "),
     ],
 )
 def test_what_is_not_installed_is_named(tmp_path, variable, value, told):
-    write(tmp_path / "own.vtu")
+    write(tmp_path / "own.vtu", point_data=MASKS)
     if variable == "PYTHONPATH":
         (tmp_path / f"{value}.py").write_text(f"raise ImportError(name={value!r})\n")
         value = str(tmp_path)
-    environment = dict(os.environ, **{variable: value})
-    refused("run", case_of(tmp_path, "own.vtu"), told=told, env=environment)
+    environment, output = dict(os.environ, **{variable: value}), tmp_path / "out.vtu"
+    refused("mesh", case_of(tmp_path, "own.vtu"), "-o", output, told=told, env=environment)
 
 
 def test_a_converter_that_dies(tmp_path):
@@ -340,8 +340,7 @@ def test_wrong_ways_to_score(answered, words, told):
 def test_quality_table(tmp_path):
     """Two cubes, the upper one leaning by 60 degrees: its scaled Jacobian is that cosine."""
     points = POINTS + np.sqrt(3) * np.maximum(POINTS[:, 2:] - 1, 0) * [1, 0, 0]
-    masks = {name: (POINTS[:, 2] == z).astype(int) for name, z in (("foot", 0), ("head", 2))}
-    write(tmp_path / "own.vtu", points, point_data=masks)
+    write(tmp_path / "own.vtu", points, point_data=MASKS)
     said = sandglass("mesh", case_of(tmp_path, "own.vtu"), "-o", tmp_path / "m.h5", code=0).stdout
     assert "smallest scaled Jacobian 0.500" in said
     lines = [line.strip() for line in said.splitlines()]
