@@ -154,10 +154,11 @@ def _hexahedra(mesh, path):
             others[block.kind] = others.get(block.kind, 0) + len(block.ids)
     if others:
         listed = ", ".join(f"{count} of type '{kind}'" for kind, count in sorted(others.items()))
+        hint = mesh.hint or "; mesh volumes with hexahedra of first order"
         raise InputError(
             f"{path}: has non-hexahedral elements: {listed}, besides "
             f"{sum(len(block.ids) for block in found)} hexahedra; only eight-node hexahedra are "
-            f"allowed, and elements of lower dimension to define sets{mesh.hint}"
+            f"allowed, and elements of lower dimension to define sets{hint}"
         )
     if not found:
         lower = sorted({block.kind for block in mesh.blocks if len(block.ids)})
@@ -252,6 +253,31 @@ def content(path):
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise InputError(f"{path}: is text in UTF-16; save it as UTF-8")
     return data.removeprefix(b"\xef\xbb\xbf")
+
+
+class NotNumber(ValueError):
+    """Of a word that is no number; at: its place among the words."""
+
+    def __init__(self, word, kind, at):
+        text = word.decode("utf-8", "replace") if isinstance(word, bytes) else word
+        super().__init__(f"{text[:40]!r} is not a {'whole ' if kind[0] == 'i' else ''}number")
+        self.at = at
+
+
+def as_numbers(words, kind):
+    """Words of a text as an array (n,) of "f8" or "i8". Raises NotNumber."""
+    try:
+        return np.array(words, dtype=kind)
+    except (ValueError, OverflowError):
+        for at, word in enumerate(words):
+            try:
+                if kind[0] == "f" or abs(int(word)) < 2**63:
+                    float(word)
+                    continue
+            except ValueError:
+                pass
+            raise NotNumber(word, kind, at) from None
+        raise
 
 
 def _count(number, word):

@@ -11,7 +11,7 @@ import re
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh, content
+from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh, NotNumber, as_numbers, content
 
 # Gmsh's number of an element type: name, dimension, nodes.
 KINDS = {
@@ -50,7 +50,7 @@ def read(path):
         if name not in sections:
             raise InputError(f"{path}: section ${name} is missing; not a Gmsh mesh, or truncated")
     if "PartitionedEntities" in sections:
-        raise InputError(f"{path}: is partitioned; save it whole (Mesh.PartitionSplitMeshFiles)")
+        raise InputError(f"{path}: is partitioned; save it whole, after Mesh > Unpartition in Gmsh")
     words = sections["MeshFormat"].split(None, 3)[:3]
     if len(words) < 3 or words[1] not in (b"0", b"1"):
         raise InputError(f"{path}: $MeshFormat must be a version, 0 or 1, and a size")
@@ -106,17 +106,10 @@ class _Numbers:
         if self.order:
             return np.frombuffer(found, self.order + kind).astype(kind)
         try:
-            return np.array(found, dtype="S").astype("i8" if kind[0] == "i" else kind)
-        except (ValueError, OverflowError):
-            self.position -= count
-            for word in found:  # to the one that is wrong
-                try:
-                    (int if kind[0] == "i" else float)(word)
-                except ValueError:
-                    break
-                self.position += 1
-            what = "a whole number" if kind[0] == "i" else "a number"
-            raise self.wrong(f"contains {word.decode('ascii', 'replace')!r}, not {what}") from None
+            return as_numbers(found, kind[0] + "8")
+        except NotNumber as error:
+            self.position += error.at - count
+            raise self.wrong(f"is damaged: {error}") from error
 
     def end(self, count, announced, things):
         """Raises InputError unless as many things were read as announced, and nothing is left."""
@@ -129,7 +122,8 @@ class _Numbers:
     def kind(self, number):
         """The entry of KINDS for Gmsh's number. Raises InputError."""
         if number not in KINDS:
-            raise self.wrong(f"has elements of Gmsh's type {number}, which is unknown here")
+            rule = "hexahedra of first order are required, which are of type 5"
+            raise self.wrong(f"has elements of Gmsh's type {number}; {rule}")
         return KINDS[number]
 
 
@@ -145,6 +139,8 @@ def _sections(path, data):
     while begin := re.compile(rb"^\$(\w+)[ \t]*\r?\n", re.MULTILINE).search(data, position):
         end = data.find(b"$End" + begin[1], begin.end())
         name, line = begin[1].decode("ascii", "replace"), data.count(b"\n", 0, begin.start()) + 1
+        if name.startswith("End"):
+            raise InputError(f"{path}:{line}: ${name} ends no section: the file is damaged")
         if end < 0:
             rule = f"${name} has no $End{name}: the file is cut off or damaged"
             raise InputError(f"{path}:{line}: {rule}")

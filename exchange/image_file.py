@@ -41,7 +41,8 @@ def read_nifti(path, spacing):
         labels, affine = np.asanyarray(image.dataobj), image.affine
         unit = {"meter": 1.0, "micron": 1e-6}.get(image.header.get_xyzt_units()[0], MILLIMETRES)
     except Exception as error:  # a library may fail in any way on a damaged file
-        raise InputError(f"{path}: cannot be read as NIfTI: {error}") from error
+        reason = f"code {error} in its header is unknown" if isinstance(error, KeyError) else error
+        raise InputError(f"{path}: cannot be read as NIfTI: {reason}") from error
     # The affine map places the middle of voxel (i, j, k) at (i, j, k).
     map_, origin = unit * affine[:3, :3], unit * affine[:3, 3]
     mesh = _voxels(path, labels, map_, origin - map_ @ (0.5, 0.5, 0.5))

@@ -9,7 +9,7 @@ from urllib.parse import unquote
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import content
+from exchange.foreign_mesh import NotNumber, as_numbers, content
 from exchange.vtu_reader import Grid
 
 TYPES = {"bit": "b", "char": "i1", "short": "i2", "int": "i4", "long": "i8", "float": "f4"}
@@ -46,7 +46,11 @@ class LegacyGrid(Grid):
                 elif words[0].upper() in ATTRIBUTES:
                     self.keep(words[1], ATTRIBUTES[words[0].upper()], words[2])
                 else:
-                    raise self.wrong(f"{words[0][:40]!r} is no keyword of such a file")
+                    word = (
+                        words[0][:40] if words[0].isascii() and words[0].isprintable() else "data"
+                    )
+                    rule = "the array before is longer than announced, or damaged"
+                    raise self.wrong(f"{word!r} stands where a keyword is required: {rule}")
             except (TypeError, ValueError, IndexError):  # too few words, or other than numbers
                 raise self.wrong(f"'{' '.join(words)[:60]}' is incomplete or damaged") from None
         for name, found in (("POINTS", self.points), ("CELLS", self.offsets)):
@@ -118,9 +122,9 @@ class LegacyGrid(Grid):
         rest = found.pop() if len(found) > count else b""
         self.position = len(self.data) - len(rest)
         try:
-            values = np.array(found, dtype="S").astype("f8" if kind[0] == "f" else "i8")
-        except (ValueError, OverflowError) as error:
-            raise self.wrong(f"{count} numbers are announced: {error}") from error
+            values = as_numbers(found, "f8" if kind[0] == "f" else "i8")
+        except NotNumber as error:
+            raise self.wrong(f"{count} numbers are announced, but {error}") from error
         return values if kind[0] == "f" else values.astype("u1" if kind == "b" else kind)
 
     def keep(self, name, width, kind, rows=None):

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import content
+from exchange.foreign_mesh import as_numbers, content
 
 KINDS = {"Int": "i", "UInt": "u", "Float": "f"}
 APPENDED = re.compile(rb"<AppendedData([^>]*)>\s*_")
@@ -38,7 +38,7 @@ class Grid:
         try:
             root = ElementTree.fromstring(data)
         except (ElementTree.ParseError, ValueError, LookupError) as error:
-            raise self.wrong(error) from error
+            raise self.wrong(f"its XML is cut off or damaged: {error}") from error
         # Lines of arrays, for messages: the parser does not keep them.
         starts = [
             data.count(b"\n", 0, at.start()) + 1 for at in re.finditer(rb"<DataArray\b", data)
@@ -154,10 +154,8 @@ class Grid:
         text = (element.text or "") + "".join(child.tail or "" for child in element)
         try:
             if form == "ascii":
-                words = text.split()
-                if kind.kind == "f":
-                    return np.array(words, dtype=float)
-                return np.array(words, dtype=np.int64).astype(kind.newbyteorder("="))
+                found = as_numbers(text.split(), "f8" if kind.kind == "f" else "i8")
+                return found if kind.kind == "f" else found.astype(kind.newbyteorder("="))
             if form == "binary":
                 data, raw = "".join(text.split()).encode("ascii"), False
             elif form == "appended":

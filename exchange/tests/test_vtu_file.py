@@ -146,7 +146,9 @@ def test_the_line_of_an_array_is_named(tmp_path, capsys):
     at = next(i for i, line in enumerate(lines) if 'Name="ids"' in line)
     lines[at + 3] = "2x"
     (tmp_path / "a.vtu").write_text("\n".join(lines))
-    with pytest.raises(Refused, match=rf"a.vtu:{at + 1}: cannot .* array 'ids': invalid.*'2x'"):
+    with pytest.raises(
+        Refused, match=rf"a.vtu:{at + 1}: cannot .* array 'ids': '2x' is not a whole number"
+    ):
         read(capsys, tmp_path / "a.vtu")
 
 
@@ -204,18 +206,18 @@ def test_a_legacy_file(tmp_path, capsys):
         ("# vtk", "# VTX", ":1: .* '# vtk DataFile Version N', a title, and ASCII or BINARY must"),
         ("ASCII", "TEXT", "a title, and ASCII or BINARY must come first"),
         ("UNSTRUCTURED_GRID", "POLYDATA", ":4: .*type POLYDATA; UNSTRUCTURED_GRID is required"),
-        ("POINTS 12", "POINTS 13", ":5: .*39 numbers are announced: .*'CELLS'"),
+        ("POINTS 12", "POINTS 13", ":5: .*39 numbers are announced, but 'CELLS' is not a n"),
         ("POINTS 12 float", "POINTS 12", ":5: .*'POINTS 12' is incomplete or damaged"),
         ("POINTS 12 float", "POINTS 12 words", ":5: .*type 'words' is unknown"),
         ("POINTS 12", "POINTS 12000000000000", ":5: .*announced, more than the file holds"),
-        ("CELLS 2 18", "CELLS 2 17", ":10: .*'11' is no keyword|:7: .*2 cells have 18 numbers"),
+        ("CELLS 2 18", "CELLS 2 17", ":10: .*'11' stands|:7: .*2 cells have 18 numbers"),
         ("8 4 5", "7 4 5", ":7: .*2 cells have 17 numbers; 18 are announced"),
         ("8 4 5", "-8 4 5", ":7: .*negative number of nodes"),
         ("CELL_TYPES 2\n12\n12", "CELL_TYPES 1\n12", "2 cells and 1 types; 1 are required"),
         ("POINT_DATA 12\n", "", ":14: .*array 'left foot' comes before POINT_DATA"),
         ("SCALARS label int\n3\n7", "SCALARS label int\n3", ":23: .*2 numbers are .*cut off"),
         ("VECTORS u", "VECTORS left%20foot", "two arrays are named 'left foot'"),
-        ("VECTORS u", "VEKTORS u", ":17: .*'VEKTORS' is no keyword of such a file"),
+        ("VECTORS u", "VEKTORS u", ":17: .*'VEKTORS' stands where a keyword is"),
         ("CELLS 2 18", "METADATA\n\nCELLS 2 18", None),
     ],
 )
