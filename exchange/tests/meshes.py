@@ -38,17 +38,6 @@ def run(capsys, *arguments):
     return said.err
 
 
-def damaged(data, every, changed, seed):
-    """The bytes cut at each multiple of `every`, then `changed` times with a few bytes replaced."""
-    random = np.random.default_rng(seed)
-    yield from (data[:length] for length in range(0, len(data), every))
-    for _ in range(changed):
-        spoilt = bytearray(data)
-        for at in random.integers(0, len(data), 3):
-            spoilt[at] = random.integers(0, 256)
-        yield bytes(spoilt)
-
-
 def read(capsys, path):
     """(points, cells, sets, warnings) of a mesh file, by convert.py and back."""
     output = path.with_name("converted.h5")

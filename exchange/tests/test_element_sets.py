@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 import pytest
 from command_line import sandglass
-from meshes import CELLS, CUBES, DATA, POINTS, write
+from meshes import CELLS, DATA, POINTS, write
 
 from common.program import CASES
 from common.result_file import last_displacement
@@ -25,12 +25,6 @@ def test_physical_volumes(tmp_path):
     nodes = "\n".join(f"{n} {x} {y} {z}" for n, (x, y, z) in enumerate(POINTS, 1))
     path.write_text((DATA / "cubes.msh.in").read_text().format(nodes=nodes))
     assert element_sets(path) == {"bone": [0], "soft_tissue": [1]}
-
-
-def test_elsets(tmp_path):
-    path = tmp_path / "a.inp"
-    path.write_text(CUBES + "*ELSET, ELSET=upper\n2\n")
-    assert element_sets(path) == {"tissue": [0, 1], "upper": [1]}
 
 
 def test_cell_arrays(tmp_path):
@@ -62,31 +56,6 @@ def test_an_image_is_an_element_for_each_labelled_voxel(tmp_path):
     assert (high - low == (0.5, 1, 2)).all()
     for label, name in ((4, "label-4"), (9, "label-9")):
         assert (low[sets[name]] == np.argwhere(label == LABELS) * (0.5, 1, 2)).all()
-
-
-@pytest.mark.parametrize("flip", [1, -1])
-def test_nifti_has_the_place_of_its_voxels(tmp_path, flip):
-    """In millimetres; an axis that runs backwards mirrors voxels, which must not invert them."""
-    nibabel = pytest.importorskip("nibabel")
-    affine = np.diag([2.0 * flip, 3.0, 4.0, 1.0])
-    affine[:3, 3] = 10.0, 20.0, 30.0
-    nibabel.save(nibabel.Nifti1Image(LABELS, affine), tmp_path / "a.nii.gz")
-    element_sets(tmp_path / "a.nii.gz")
-    mesh = hdf5_file.read_mesh(tmp_path / "mesh.h5")
-    middles = mesh.points[mesh.cells].mean(axis=1)
-    places = np.argwhere(LABELS) * (2.0 * flip, 3.0, 4.0) + (10.0, 20.0, 30.0)
-    assert np.allclose(middles, places / 1000, rtol=0, atol=1e-12)
-
-
-def test_a_scale_in_the_header_leaves_whole_labels(tmp_path):
-    """Times .1 in float, 10 is 1.00000001."""
-    nibabel = pytest.importorskip("nibabel")
-    nibabel.save(nibabel.Nifti1Image(LABELS * np.uint8(10), np.eye(4)), tmp_path / "a.nii")
-    data = bytearray((tmp_path / "a.nii").read_bytes())
-    data[112:120] = np.array([0.1, 0.0], "<f4").tobytes()  # scl_slope, scl_inter
-    (tmp_path / "a.nii").write_bytes(data)
-    assert (nibabel.load(tmp_path / "a.nii").get_fdata() != LABELS).any()
-    assert element_sets(tmp_path / "a.nii") == {"label-4": [0, 1, 2, 3], "label-9": [4]}
 
 
 @pytest.mark.parametrize(

@@ -53,9 +53,9 @@ def test_mutilated_files_are_refused_or_valid(tmp_path):
     """A digit of a coordinate that changes, or two lines of a list that change places, leave a
     valid file of another body: no more than one in 25."""
     pytest.importorskip("nibabel")
-    found = generated.mutilate(tmp_path, 260, 2)
+    found = generated.mutilate(tmp_path, 500, 2)
     assert not [result for result in found if "WRONG" in str(result)], found
-    assert found[2] > 200 and found[2] + found[0] > 250, found
+    assert found[2] > 400 and found[2] + found[0] > 480, found
 
 
 @pytest.mark.parametrize("ending", [".msh", ".inp"])
@@ -158,13 +158,6 @@ def test_a_comma_at_the_end_of_a_line_continues_nothing(tmp_path, comma):
     lines += listed("Set-1", foot)
     energy = energy_of(tmp_path, lines, "SKIN", load="displacement")
     assert energy == pytest.approx(0.0148756, rel=3e-6)
-
-
-def test_a_name_of_several_sets_is_refused_where_it_is_used(tmp_path):
-    (tmp_path / "body.inp").write_bytes(KINDS["inp same name"][1](np.random.default_rng(5))[0])
-    (tmp_path / "case.toml").write_text(CASE.format("body.inp", ""))
-    told = "'foot' means several sets of the file: write 'Assembly.foot' (9) or 'Body-1.foot' (36)"
-    sandglass("run", tmp_path / "case.toml", "-o", tmp_path / "a.h5", code=2, told="= " + told)
 
 
 def test_the_comparison_sees_what_is_misread():
