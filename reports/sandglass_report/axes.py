@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 TICKS_1_2_5 = (1, 2, 5)
 
@@ -18,16 +18,12 @@ def percent_scale(axis, limits):
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:.10g} %"))
 
 
-def log_scale(axis, limits, last_tick=math.inf):
-    """Makes an x axis logarithmic with plain numbers as ticks, up to last_tick."""
+def log_scale(axis, limits):
+    """Makes an x axis logarithmic with plain numbers as ticks."""
     axis.axes.set_xscale("log")
     axis.axes.set_xlim(limits)
-    decades = range(math.floor(math.log10(limits[0])), math.ceil(math.log10(limits[1])) + 1)
     wide = limits[1] > 400 * limits[0]
-    ticks = [s * 10.0**d for d in decades for s in ((1,) if wide else TICKS_1_2_5)]
-    axis.set_major_locator(
-        FixedLocator([t for t in ticks if limits[0] <= t <= min(limits[1], 1.001 * last_tick)])
-    )
+    axis.set_major_locator(LogLocator(subs=(1,) if wide else TICKS_1_2_5, numticks=20))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.10g}"))
 
