@@ -4,15 +4,13 @@ Exit codes: 0 ok, 1 a limit is broken, 2 bad usage or input, 3 the computation f
 """
 
 import os
-import pathlib
 import shutil
-import signal
 import xml.etree.ElementTree
 
 import h5py
 import numpy
 import pytest
-from command_line import BLOCK, ROOT, dynamic, interrupted, methods, sandglass
+from command_line import BLOCK, ROOT, dynamic, methods, sandglass
 
 from common.result_file import text_of
 
@@ -230,24 +228,6 @@ def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
     sandglass("run", block, "-o", result, code=3, told="no equilibrium after 5 evaluations")
     with h5py.File(result) as file:
         assert text_of(file.attrs["status"]) == "no equilibrium after 5 evaluations"
-
-
-@pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(), reason="needs Linux's /proc")
-@pytest.mark.parametrize("request_to_end", [signal.SIGINT, signal.SIGTERM])
-def test_interrupt_keeps_what_was_computed(block, request_to_end):
-    block.write_text(dynamic(BLOCK, duration=1e6))
-    result = block.parent / "result.h5"
-    code, errors = interrupted("run", block, "-o", result, sent=request_to_end)
-    assert code == 3 and "interrupted" in errors and str(result) in errors
-    assert sorted(file.name for file in block.parent.iterdir()) == [
-        "block.toml",
-        "result.h5",
-        "result.xdmf",
-    ]
-    with h5py.File(result) as file:
-        assert text_of(file.attrs["status"]).startswith("interrupted at step ")
-        assert file["frames/0000/displacement"].shape == (45, 3)
-        assert len(file["history/time"]) > 0
 
 
 def test_cases_folder_is_found_from_anywhere(tmp_path):

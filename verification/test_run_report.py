@@ -49,18 +49,6 @@ def test_separate_parts_are_counted_at_the_start_and_at_the_end(block, tmp_path)
     assert any(re.match("largest displacement .*; 2 separate parts", line) for line in lines)
 
 
-def test_units_that_are_wrong_by_a_thousand_are_seen(block):
-    block.write_text(
-        BLOCK.replace("[0.1, 0.1, 0.2]", "[100, 100, 200]")
-        .replace("[0.2, 0.2]", "[200, 200]")
-        .replace("young_modulus = 3000.0", "young_modulus = 3e9")
-        .replace("[0.02, 0.0, 0.01]", "[20, 0.0, 10]")
-    )
-    size, material, _ = lines_of(sandglass("run", block))[:3]
-    assert "100 m x 100 m x 200 m, 2e+06 m^3, 2e+09 kg" in size
-    assert "Young's modulus 3 GPa" in material and "waves of 7.17 km/s" in material
-
-
 def test_a_mesh_in_mm_is_warned_of_with_a_way_out(block, tmp_path):
     def outcome_of(factor):
         mesh = tmp_path / "mesh.h5"

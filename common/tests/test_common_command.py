@@ -1,11 +1,9 @@
 """Exit codes and messages of command lines."""
 
-import argparse
-
 import pytest
 
 from common.command import command_line, exit_code, option, whole_number, writable
-from common.errors import ComputationError, InputError, suggestion
+from common.errors import ComputationError, InputError
 
 
 @pytest.mark.parametrize("returned, code", [(None, 0), (0, 0), (1, 1), (3, 3)])
@@ -26,20 +24,6 @@ def test_errors_are_one_line_and_a_code(kind, code, capsys):
 def test_mistakes_of_the_program_itself_are_not_hidden():
     with pytest.raises(ZeroDivisionError):
         exit_code(lambda: 1 / 0)
-
-
-def test_whole_numbers():
-    assert whole_number(1)("1") == 1
-    with pytest.raises(argparse.ArgumentTypeError, match="0: must be 1 or more"):
-        whole_number(1)("0")
-    with pytest.raises(ValueError):
-        whole_number(1)("1.5")
-
-
-def test_unknown_names_are_answered_with_the_nearest_and_all():
-    known = ["golden", "truth"]
-    assert suggestion("gulden", known) == "did you mean 'golden'? known: golden, truth"
-    assert suggestion("x", known) == "known: golden, truth"
 
 
 TEXT = """Does something.

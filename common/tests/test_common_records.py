@@ -8,14 +8,6 @@ from common.errors import InputError
 from common.records import NUMBER, as_dataclass, entries, entry, facts, key
 
 
-def test_values_of_the_right_kind_are_taken():
-    record = {"n": 3, "x": 0.5, "t": "text", "b": True, "l": [], "o": {}, "none": None}
-    for name, kind in (("n", int), ("n", NUMBER), ("x", NUMBER), ("t", str), ("b", bool)):
-        assert entry("a.json", record, name, kind) is record[name]
-    assert entry("a.json", record, "l", list) == [] and entry("a.json", record, "o", dict) == {}
-    assert entry("a.json", record, "none", str, none_allowed=True) is None
-
-
 @pytest.mark.parametrize(
     "value, kind, told",
     [
@@ -35,13 +27,6 @@ def test_others_are_refused(value, kind, told):
         entry("a.json", {"key": value}, "key", kind)
     with pytest.raises(InputError, match=rf"^a.json: list\[2\].key = {told}"):
         entry("a.json: list[2]", {"key": value}, "key", kind)
-
-
-def test_null_is_offered_where_it_is_allowed():
-    with pytest.raises(InputError, match="must be a number or null"):
-        entry("a.json", {"key": "3"}, "key", NUMBER, none_allowed=True)
-    with pytest.raises(InputError, match="a.json: key is missing; it must be a number"):
-        entry("a.json", {}, "key", NUMBER, none_allowed=True)
 
 
 def test_lists_of_objects():

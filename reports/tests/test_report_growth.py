@@ -1,17 +1,12 @@
 """How the cost grows: what the plate draws; broken files are rejected."""
 
 import json
-import subprocess
-import sys
 
 import pytest
 from synthetic import Axes
 
 from common.errors import InputError
-from common.program import ROOT
 from sandglass_report.growth import growth_plate, read_growth
-
-SCRIPT = ROOT / "reports" / "make_figures.py"
 
 
 def record(elements, seconds, **changed):
@@ -53,12 +48,3 @@ def test_a_line_per_program_and_ratio_in_the_order_of_the_meshes(tmp_path):
 def test_a_broken_file_is_rejected(tmp_path, broken):
     with pytest.raises(InputError, match="growth.json"):
         read_growth(write(tmp_path, record(320, 1.0) | broken))
-
-
-def test_the_script_draws_the_plate(tmp_path):
-    command = [sys.executable, str(SCRIPT), str(write(tmp_path, record(320, 1.0)))]
-    subprocess.run([*command, "-o", str(tmp_path)], check=True)
-    assert "How the cost grows" in (tmp_path / "growth.svg").read_text()
-    for wrong in ("none/growth.json", "other.json"):
-        missing = [*command[:2], str(tmp_path / wrong), "-o", str(tmp_path)]
-        assert subprocess.run(missing, capture_output=True).returncode == 2

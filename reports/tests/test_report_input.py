@@ -32,18 +32,6 @@ def test_a_record_of_the_wrong_kind(data, capsys, key, value):
     refused(data, capsys, f"records[1].{key}", repr(value))
 
 
-def test_a_number_that_is_none(data, capsys):
-    data.records[1]["golden"]["max_relative_error"] = float("nan")
-    data.write_verdicts()
-    refused(data, capsys, "records[1].golden.max_relative_error", "finite")
-
-
-def test_a_record_without_a_key(data, capsys):
-    del data.records[0]["status"]
-    data.write_verdicts()
-    refused(data, capsys, "records[0].status", "missing")
-
-
 @pytest.mark.parametrize(
     ("file", "text", "words"),
     [

@@ -94,15 +94,3 @@ def test_what_is_broken_is_refused_with_file_and_key(data, capsys, name, documen
     for word in (name, *words):
         assert word in told
     assert not data.page.exists()
-
-
-def test_a_rung_with_a_text_for_a_number_is_refused(data, capsys):
-    data.write("curves/a.json", data.ladder([data.rung("t4", 1.0, 0.1) | {"seconds": "fast"}]))
-    assert main(data.arguments) == 2
-    assert "rungs[0].seconds = 'fast'" in capsys.readouterr().err
-
-
-def test_text_that_is_no_json_is_refused(data, capsys):
-    (data.folder / "bench.json").write_text("{")
-    assert main(data.arguments) == 2
-    assert "bench.json: not a JSON file" in capsys.readouterr().err
