@@ -87,16 +87,15 @@ class Resolver:
     def surface(self, part, key):
         """(sorted nodes of a surface, ""), or (None, why it is not read)."""
         spelled, entries = part.sets["SURFACE"][key]
-        found = [NONE]
+        alike = {}  # label -> where it is first, members
         for place, instance, (label, entry) in entries:
-            nodes = label == "NODE"
-            members = self._entry(
-                part, "NSET" if nodes else "ELSET", spelled, place, instance, entry
-            )
-            if nodes:
-                found.append(members)
-            else:
-                found += self._faces(members, label)
+            kind = "NSET" if label == "NODE" else "ELSET"
+            members = self._entry(part, kind, spelled, place, instance, entry)
+            alike.setdefault(label, (place, []))[1].append(members)
+        found = [NONE]
+        for label, (place, some) in alike.items():
+            members = np.concatenate(some)
+            found += [members] if label == "NODE" else self._faces(members, label)
             if found[-1] is None:
                 what = f"face {label} of such elements" if label else "a surface without faces"
                 return None, f"{place}: surface '{spelled}': {what} is not read"

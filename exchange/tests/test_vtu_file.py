@@ -1,6 +1,7 @@
 """VTK's unstructured grids as meshio and VTK write them, and damaged ones."""
 
 import base64
+import locale
 import sys
 
 import h5py
@@ -44,6 +45,29 @@ def test_what_vtk_writes(tmp_path, capsys, version, compressor):
         assert np.allclose(points, POINTS / 3, rtol=0, atol=1e-10 if mode == 0 else 0)
         assert (cells == CELLS).all() and not warnings
         assert sets == {"foot": [0, 1, 2, 3], "Fuß 2": [11]}
+
+
+@pytest.mark.parametrize("kind", [1, 2])
+@pytest.mark.parametrize("version", [42, 51])
+def test_what_vtk_writes_in_its_legacy_form(tmp_path, capsys, version, kind):
+    """As text and binary."""
+    pytest.importorskip("vtkmodules")
+    from vtkmodules import vtkIOLegacy, vtkIOXML
+
+    reader = vtkIOXML.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(write(tmp_path / "own.vtu", POINTS / 3, point_data=SETS)))
+    writer = vtkIOLegacy.vtkUnstructuredGridWriter()
+    writer.SetInputConnection(reader.GetOutputPort())
+    writer.SetFileVersion(version)
+    writer.SetFileType(kind)
+    writer.SetFileName(str(tmp_path / "a.vtk"))
+    before = locale.setlocale(locale.LC_ALL)
+    writer.Write()  # in the locale C, which it leaves behind
+    locale.setlocale(locale.LC_ALL, before)
+    points, cells, sets, warnings = read(capsys, tmp_path / "a.vtk")
+    assert np.allclose(points, POINTS / 3, rtol=0, atol=1e-5 if kind == 1 else 0)
+    assert (cells == CELLS).all() and not warnings
+    assert sets == {"foot": [0, 1, 2, 3], "Fuß 2": [11]}
 
 
 def test_a_compressor_without_its_package_is_named(tmp_path, capsys, monkeypatch):
