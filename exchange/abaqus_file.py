@@ -167,8 +167,8 @@ class _Reader:
                 xyz = [_real(place, field) for field in fields[1:4]]
                 points.append(xyz + [0.0] * (3 - len(xyz)))
             if short:
-                rule = f"has fewer than three coordinates, the first of {len(short)}; others are 0"
-                self.notes.append(f"{short[0]}: a node {rule}")
+                rule = "have fewer than three coordinates, the first here; the missing ones are 0"
+                self.notes.append(f"{short[0]}: {len(short)} of {len(ids)} nodes {rule}")
         self.part.ids.append(np.array(ids, dtype=np.int64))
         self.part.points.append(np.array(points).reshape(-1, 3))
         if name := options.get("NSET"):

@@ -110,7 +110,9 @@ def test_nodes_with_two_coordinates_are_warned_of(tmp_path, capsys):
     text = CUBES.replace("1, 0., 0., 0.", "1, 0., 0.").replace("2, 1., 0., 0.", "2, 1., 0.,")
     points, *_, warnings = read_text(tmp_path, capsys, text)
     assert (points == POINTS).all()
-    assert "cubes.inp:2: a node has fewer than three coordinates, the first of 2" in warnings
+    assert (
+        "cubes.inp:2: 2 of 12 nodes have fewer than three coordinates, the first here" in warnings
+    )
 
 
 def test_what_gmsh_writes(tmp_path, capsys):
