@@ -70,14 +70,14 @@ def difference(found, body):
 
 def check(folder, seed, name):
     """Writes a file of a kind, reads it; "" or what is wrong."""
-    ending, write, told = KINDS[name]
+    ending, write, message = KINDS[name]
     path = folder / ("body" + ending)
     data, body = write(np.random.default_rng(seed))
     path.write_bytes(data)
     code, said, _, found = read(path)
-    if told:
-        fine = code == 2 and told in said and str(path) in said
-        return "" if fine else f"code {code}: {said!r}; expected {told}"
+    if message:
+        fine = code == 2 and message in said and str(path) in said
+        return "" if fine else f"code {code}: {said!r}; expected {message}"
     return difference(found, body) if code == 0 else f"code {code}: {said}"
 
 
@@ -152,9 +152,9 @@ def main():
         folder = options.keep or Path(temporary)
         for i in range(options.count):
             name = names[i % len(names)]
-            if told := check(folder, options.seed * 10**6 + i, name):
+            if message := check(folder, options.seed * 10**6 + i, name):
                 wrong += 1
-                print(f"{name} {i}: {told}")
+                print(f"{name} {i}: {message}")
         if options.count:
             print(f"{options.count} files, {wrong} misread or refused without need")
         if options.mutilate:

@@ -86,7 +86,7 @@ def test_sets(tmp_path, capsys, text, expected):
 
 
 @pytest.mark.parametrize(
-    "text, told",
+    "text, message",
     [
         (
             "*SURFACE, NAME=s, TYPE=CUTTING SURFACE\n",
@@ -100,9 +100,9 @@ def test_sets(tmp_path, capsys, text, expected):
         ),
     ],
 )
-def test_a_surface_that_is_not_read_is_warned_of(tmp_path, capsys, text, told):
+def test_a_surface_that_is_not_read_is_warned_of(tmp_path, capsys, text, message):
     _, _, sets, warnings = read_text(tmp_path, capsys, CUBES + text)
-    assert "s" not in sets and told in warnings
+    assert "s" not in sets and message in warnings
     assert "; list its nodes as *NSET if the case needs them" in warnings
 
 
@@ -192,7 +192,7 @@ def test_messages_name_the_instance(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "text, told",
+    "text, message",
     [
         ("", "has no nodes"),
         ("1, 2\n", "cubes.inp:1: '1, 2' comes before the first"),
@@ -261,8 +261,8 @@ def test_messages_name_the_instance(tmp_path, capsys):
         ("*INCLUDE, INPUT=cubes.inp\n", "nested at most ten deep"),
     ],
 )
-def test_wrong_files(tmp_path, capsys, text, told):
-    with pytest.raises(Refused, match=told):
+def test_wrong_files(tmp_path, capsys, text, message):
+    with pytest.raises(Refused, match=message):
         read_text(tmp_path, capsys, text)
 
 

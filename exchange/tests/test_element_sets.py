@@ -100,7 +100,7 @@ def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, 
 
 
 @pytest.mark.parametrize(
-    "at, value, told",
+    "at, value, message",
     [
         (80, "<f4", "should be"),  # the sizes of voxels, which nibabel would repair
         (123, "u1", "code 7 in its header is unknown"),
@@ -109,7 +109,7 @@ def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, 
         (None, "", "Expected 12 bytes, got 11"),
     ],
 )
-def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, told):
+def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, message):
     nibabel = pytest.importorskip("nibabel")
     image = nibabel.Nifti1Image(LABELS, np.diag([1.0, 2.0, 3.0, 1.0]))
     data = bytearray(image.to_bytes())
@@ -121,7 +121,7 @@ def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, 
     (tmp_path / "a.nii").write_bytes(data)
     code = convert.main(["mesh", str(tmp_path / "a.nii"), str(tmp_path / "b.h5")])
     said = "".join(capfd.readouterr())
-    assert code == (0 if at == 42 else 2) and told in said and said.count("\n") == 1, said
+    assert code == (0 if at == 42 else 2) and message in said and said.count("\n") == 1, said
 
 
 def test_a_segmentation_is_a_body_of_several_materials(tmp_path):

@@ -58,17 +58,17 @@ def test_good_elements_are_left_alone(tmp_path, capsys):
 def test_tangled_elements_are_refused_with_a_hint(tmp_path, capsys):
     with pytest.raises(
         Refused, match=r"2 of 2 elements are tangled.*: 0 at \(0.5, 0.5, 0.5\)"
-    ) as told:
+    ) as error:
         read(capsys, write(tmp_path / "a.vtu", cells=CELLS[:, LEXICOGRAPHIC]))
-    assert "they seem to be numbered with x fastest" in str(told.value)
+    assert "they seem to be numbered with x fastest" in str(error.value)
     points = POINTS.copy()
     points[6] = [-0.5, -0.5, 0.5]  # the common corner beyond the opposite one
-    with pytest.raises(Refused, match="are tangled") as told:
+    with pytest.raises(Refused, match="are tangled") as error:
         read(capsys, write(tmp_path / "a.vtu", points))
-    assert "fastest" not in str(told.value)
+    assert "fastest" not in str(error.value)
 
 
-def test_an_element_that_is_inside_out_is_no_mirrored_one(tmp_path, capsys):
+def test_an_inverted_element_is_not_taken_for_a_mirrored_one(tmp_path, capsys):
     """The upper cube pushed through the lower one: its numbering is right, its position is not."""
     points = POINTS.copy()
     points[8:, 2] = 0.5
@@ -95,7 +95,7 @@ def test_flat_elements_are_refused(tmp_path, capsys):
         read(capsys, write(tmp_path / "a.vtu", POINTS * [1, 1, 0]))
 
 
-def test_ids_of_the_file_are_told(tmp_path, capsys):
+def test_ids_of_the_file_are_reported(tmp_path, capsys):
     text = CUBES.replace("\n2, 5, 6, 7, 8, 9, 10, 11, 12", "\n777, 9, 10, 11, 12, 5, 6, 7, 8")
     (tmp_path / "a.inp").write_text(text)
     _, cells, _, warnings = read(capsys, tmp_path / "a.inp")

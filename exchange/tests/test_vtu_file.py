@@ -87,7 +87,7 @@ def test_a_kind_of_cells_that_has_no_name_here_is_refused_by_number(tmp_path, ca
 
 
 @pytest.mark.parametrize(
-    "kind, cells, told",
+    "kind, cells, message",
     [
         ("tetra", [[0, 1, 2, 4]], "1 of type 'tetra', besides 0 hexahedra"),
         ("wedge", [[0, 1, 2, 4, 5, 6]] * 2, "2 of type 'wedge'"),
@@ -104,8 +104,8 @@ def test_a_kind_of_cells_that_has_no_name_here_is_refused_by_number(tmp_path, ca
         ),
     ],
 )
-def test_other_cells_are_refused(tmp_path, capsys, kind, cells, told):
-    with pytest.raises(Refused, match=told):
+def test_other_cells_are_refused(tmp_path, capsys, kind, cells, message):
+    with pytest.raises(Refused, match=message):
         read(capsys, write(tmp_path / "a.vtu", cells=cells, kind=kind))
 
 
@@ -121,7 +121,7 @@ def test_several_pieces_are_refused(tmp_path, capsys):
 @pytest.mark.parametrize(
     "content", [b"", b"<VTKFile>", b"\0\1\2", b"<a/>", base64.b64encode(b"x" * 99)]
 )
-def test_what_is_no_grid(tmp_path, capsys, content):
+def test_files_without_a_grid(tmp_path, capsys, content):
     (tmp_path / "a.vtu").write_bytes(content)
     with pytest.raises(Refused, match="a.vtu: cannot be read as a .vtu grid: "):
         read(capsys, tmp_path / "a.vtu")
@@ -188,7 +188,7 @@ def test_a_legacy_file(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "old, new, told",
+    "old, new, message",
     [
         ("# vtk", "# VTX", ":1: .* '# vtk DataFile Version N', a title, and ASCII or BINARY must"),
         ("ASCII", "TEXT", "a title, and ASCII or BINARY must come first"),
@@ -208,13 +208,13 @@ def test_a_legacy_file(tmp_path, capsys):
         ("CELLS 2 18", "METADATA\n\nCELLS 2 18", None),
     ],
 )
-def test_damage_of_a_legacy_file_is_named(tmp_path, capsys, old, new, told):
+def test_damage_of_a_legacy_file_is_named(tmp_path, capsys, old, new, message):
     assert LEGACY.count(old) == 1 or old == "VECTORS u"
     (tmp_path / "a.vtk").write_text(LEGACY.replace(old, new, 1))
-    if told is None:
+    if message is None:
         assert len(read(capsys, tmp_path / "a.vtk")[0]) == 12
         return
-    with pytest.raises(Refused, match="a.vtk" + told if told[0] == ":" else told):
+    with pytest.raises(Refused, match="a.vtk" + message if message[0] == ":" else message):
         read(capsys, tmp_path / "a.vtk")
 
 

@@ -28,11 +28,11 @@ def case_of(folder, mesh, name="own.toml"):
     return folder / name
 
 
-def refused(*arguments, told, **options):
+def refused(*arguments, message, **options):
     """One line of error, an exit code of 2."""
     done = sandglass(*arguments, **options, code=2)
     lines = done.stderr.splitlines()
-    assert len(lines) == 1 and lines[0].startswith("error: ") and told in lines[0], done.stderr
+    assert len(lines) == 1 and lines[0].startswith("error: ") and message in lines[0], done.stderr
     assert "sandglass-" not in done.stderr, "a temporary file is nobody's business"
 
 
@@ -80,64 +80,68 @@ def test_rules_of_the_case_add_sets_to_those_of_the_file(block):
         assert line in said
 
 
-def test_what_is_put_right_is_told_and_the_run_goes_on(tmp_path):
+def test_corrections_are_reported_and_the_run_continues(tmp_path):
     mirrored = CELLS[:, [4, 5, 6, 7, 0, 1, 2, 3]]
     write(tmp_path / "own.vtu", POINTS / 20, mirrored, point_data=MASKS)
     done = sandglass("run", case_of(tmp_path, "own.vtu"), code=0)
-    told = f"warning: {tmp_path}/own.vtu: 2 of 2 elements had a mirrored node order"
-    assert done.stderr.startswith(told)
+    message = f"warning: {tmp_path}/own.vtu: 2 of 2 elements had a mirrored node order"
+    assert done.stderr.startswith(message)
     assert "static equilibrium (stable):" in done.stdout
 
 
 def test_files_that_are_no_mesh(tmp_path):
     case = case_of(tmp_path, "own.msh")
     output = ["-o", tmp_path / "out.h5"]
-    told = f"{case}: mesh.file: {tmp_path}/own.msh: cannot be read: No such"
-    refused("run", case, *output, told=told)
+    message = f"{case}: mesh.file: {tmp_path}/own.msh: cannot be read: No such"
+    refused("run", case, *output, message=message)
     (tmp_path / "own.geo").touch()
-    told = f"; `gmsh -3 {tmp_path}/own.geo -o {tmp_path}/own.msh` makes"
-    refused("run", case, *output, told=told)
+    message = f"; `gmsh -3 {tmp_path}/own.geo -o {tmp_path}/own.msh` makes"
+    refused("run", case, *output, message=message)
     (tmp_path / "own.geo").unlink()
     (tmp_path / "own.msh").write_bytes((DATA / "block-4.1.msh").read_bytes()[:1500])
     for command in ("run", "mesh"):
-        refused(command, case, *output, told="own.msh:43: $Nodes has no $EndNodes: the file is cut")
-    refused("verify", case, told="own.msh:43: $Nodes has no $EndNodes")
+        refused(
+            command, case, *output, message="own.msh:43: $Nodes has no $EndNodes: the file is cut"
+        )
+    refused("verify", case, message="own.msh:43: $Nodes has no $EndNodes")
     tetrahedra = write(tmp_path / "own.vtu", cells=[[0, 1, 2, 4]], kind="tetra")
     case = case_of(tmp_path, tetrahedra.name)
-    refused("run", case, *output, told="1 of type 'tetra', besides 0 hex")
+    refused("run", case, *output, message="1 of type 'tetra', besides 0 hex")
     assert sorted(file.name for file in tmp_path.iterdir()) == ["own.msh", "own.toml", "own.vtu"]
 
 
 def test_a_file_whose_name_looks_like_an_option(tmp_path):
     case_of(tmp_path, "-o.msh")
-    told = "own.toml: mesh.file: -o.msh: cannot be read: No such file"
-    refused("run", "own.toml", told=told, cwd=tmp_path)
+    message = "own.toml: mesh.file: -o.msh: cannot be read: No such file"
+    refused("run", "own.toml", message=message, cwd=tmp_path)
 
 
 def test_a_set_that_the_file_lacks(tmp_path):
     shutil.copy(DATA / "block-4.1.msh", tmp_path)
     case = case_of(tmp_path, "block-4.1.msh")
-    refused("run", case, told="'head' is not a node set of this case; ")
+    refused("run", case, message="'head' is not a node set of this case; ")
 
 
 def test_a_file_without_sets(tmp_path):
     write(tmp_path / "own.vtu")
-    told = "'foot' is not a node set of this case, which has none: [sets] gives rules for them"
-    refused("run", case_of(tmp_path, "own.vtu"), told=told)
+    message = "'foot' is not a node set of this case, which has none: [sets] gives rules for them"
+    refused("run", case_of(tmp_path, "own.vtu"), message=message)
 
 
 def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
     (tmp_path / "own.geo").touch()
     case = case_of(tmp_path, "own.geo")
-    refused("run", case, told="own.geo: is not a complete HDF5 file (truncated, or of another")
-    refused("run", case, told="must end in .msh (Gmsh), .inp (Abaqus), .vtu, .npy or .nii")
+    refused("run", case, message="own.geo: is not a complete HDF5 file (truncated, or of another")
+    refused("run", case, message="must end in .msh (Gmsh), .inp (Abaqus), .vtu, .vtk, .npy or .nii")
     case.write_text(case.read_text().replace("file =", "fiel ="))
-    told = "mesh.generator is missing; this key or mesh.file must be given, but there is only fiel"
-    refused("run", case, told=told)
+    message = (
+        "mesh.generator is missing; this key or mesh.file must be given, but there is only fiel"
+    )
+    refused("run", case, message=message)
 
 
 @pytest.mark.parametrize(
-    "variable, value, told",
+    "variable, value, message",
     [
         ("SANDGLASS_PYTHON", "/no/python3", "/no/python3: cannot be run: No such file or dir"),
         ("SANDGLASS_EXCHANGE", "/no/exchange", "/no/exchange/convert.py: is missing"),
@@ -145,13 +149,13 @@ def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
         ("PYTHONPATH", "h5py", "h5py is not installed; files of other programs need packages "),
     ],
 )
-def test_what_is_not_installed_is_named(tmp_path, variable, value, told):
+def test_missing_programs_are_named(tmp_path, variable, value, message):
     write(tmp_path / "own.vtu", point_data=MASKS)
     if variable == "PYTHONPATH":
         (tmp_path / f"{value}.py").write_text(f"raise ImportError(name={value!r})\n")
         value = str(tmp_path)
     environment, output = dict(os.environ, **{variable: value}), tmp_path / "out.vtu"
-    refused("mesh", case_of(tmp_path, "own.vtu"), "-o", output, told=told, env=environment)
+    refused("mesh", case_of(tmp_path, "own.vtu"), "-o", output, message=message, env=environment)
 
 
 def test_a_converter_that_dies(tmp_path):
@@ -181,7 +185,7 @@ def test_a_motion_with_a_rotation_has_no_deck(block):
     text = BLOCK[: BLOCK.rindex("[[displacement]]")] + turned
     block.write_text(dynamic(text, duration=0.05))
     words = "-o", block.parent / "a.xml", "--deck", "niftysim"
-    refused("mesh", block, *words, told="a deck cannot hold rotations of a dynamic case")
+    refused("mesh", block, *words, message="a deck cannot hold rotations of a dynamic case")
 
 
 def test_a_deck_of_a_motion_says_how_it_moves(block):
@@ -202,11 +206,11 @@ def test_a_deck_of_a_motion_says_how_it_moves(block):
 def test_decks_that_cannot_be(block):
     folder, words = block.parent, ["-o", "a.inp", "--deck", "calculix"]
     block.write_text(BLOCK.replace('law = "neo-hookean"', 'law = "st-venant-kirchhoff"'))
-    told = "law = 'st-venant-kirchhoff' is not known to CalculiX"
-    refused("mesh", block, *words, told=told, cwd=folder)
+    message = "law = 'st-venant-kirchhoff' is not known to CalculiX"
+    refused("mesh", block, *words, message=message, cwd=folder)
     block.write_text(dynamic(BLOCK, duration=0.05))
-    told = "a dynamic case has no answer to score"
-    refused("score", "a.csv", "--case", block, told=told, cwd=folder)
+    message = "a dynamic case has no answer to score"
+    refused("score", "a.csv", "--case", block, message=message, cwd=folder)
     assert [file.name for file in folder.iterdir()] == ["block.toml"]
 
 
@@ -309,18 +313,18 @@ def test_without_a_golden_the_mean_dilatation_element_judges(answered):
     """Its answer equals another run's bit for bit: both end at the same residual."""
     folder = answered.parent
     with h5py.File(folder / "golden.h5") as file:
-        twin = file["displacement"][...]
+        mean_dilatation = file["displacement"][...]
     (folder / "golden.h5").unlink()
     record = scored(answered, folder / "answer.h5")
     assert record["golden"] is None and record["finding"] is None
-    expected = relative_errors(last_displacement(folder / "answer.h5"), twin, LARGEST)
+    expected = relative_errors(last_displacement(folder / "answer.h5"), mean_dilatation, LARGEST)
     assert np.isclose(record["twin"]["max_relative_error"], expected[0], rtol=1e-12)
     said = sandglass("score", folder / "answer.h5", "--case", answered, code=0).stdout
     assert "against the mean-dilatation element" in said and "against the truth" not in said
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, message",
     [
         (["none.vtu"], "none.vtu: cannot be read: No such file"),
         (["block.toml"], "block.toml: ending '.toml'; allowed are .csv, .frd, .h5"),
@@ -331,9 +335,9 @@ def test_without_a_golden_the_mean_dilatation_element_judges(answered):
         (["answer.h5", "--case", "column"], "nodes of the case have no node of the file within"),
     ],
 )
-def test_wrong_ways_to_score(answered, words, told):
+def test_wrong_ways_to_score(answered, words, message):
     case = [] if "--case" in words else ["--case", "block.toml"]
-    refused("score", *words, *case, told=told, cwd=answered.parent)
+    refused("score", *words, *case, message=message, cwd=answered.parent)
     assert (answered.parent / "answer.h5").stat().st_size > 1000
 
 

@@ -102,8 +102,8 @@ std::string as_argument(const fs::path& path) {
 bool is_foreign_mesh(const fs::path& path) {
   std::string ending = path.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".msh" || ending == ".inp" || ending == ".vtu" || ending == ".npy" || ending == ".nii" ||
-         ending == ".gz";
+  return ending == ".msh" || ending == ".inp" || ending == ".vtu" || ending == ".vtk" || ending == ".npy" ||
+         ending == ".nii" || ending == ".gz";
 }
 
 MeshWithSets read_foreign_mesh(const MeshFile& file) {
