@@ -7,8 +7,8 @@
 
 namespace sandglass {
 
-/// A rigid obstacle that pushes boundary nodes out of itself, by a force in proportion to their depth, and
-/// moves along a straight line. The pressure acts on the undeformed area of the boundary, at its nodes.
+/// A rigid obstacle that keeps boundary nodes out of itself, and moves along a straight line. The pressure of
+/// a penalty acts on the undeformed area of the boundary, at its nodes.
 struct Obstacle {
   static constexpr std::string_view name = "obstacle";
   static constexpr std::string_view summary = "a rigid obstacle that the body touches";
@@ -18,6 +18,12 @@ struct Obstacle {
   enum class Shape { plane, sphere, capsule, cylinder, box };
   friend constexpr std::array<std::string_view, 5> words_of(Shape /*type*/) {
     return {"plane", "sphere", "capsule", "cylinder", "box"};
+  }
+
+  /// Penalty: a force in proportion to the depth. Kinematic: in every step, nodes are moved back onto it.
+  enum class Method { penalty, kinematic };
+  friend constexpr std::array<std::string_view, 2> words_of(Method /*type*/) {
+    return {"penalty", "kinematic"};
   }
 
   std::string label;
@@ -33,6 +39,7 @@ struct Obstacle {
   LoadCurve curve = {};
   double friction = 0.0;  ///< Coulomb's coefficient
   double penalty = 1.0;   ///< see parameters
+  Method method = Method::penalty;
 
   static constexpr auto parameters() {
     using O = Obstacle;
@@ -60,7 +67,9 @@ struct Obstacle {
             &O::penalty, "penalty", "-", Range::positive(),
             "pressure over (lambda + 2 mu) depth / h, with the softest material and the shortest edge h of "
             "the elements that may touch it",
-            false}};
+            false},
+        Parameter{&O::method, "method", "-", Range::any(),
+                  "penalty, or kinematic in motions: every step moves nodes back onto it", false}};
   }
   std::optional<BrokenRule> broken_rule() const;
 

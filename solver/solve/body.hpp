@@ -92,6 +92,11 @@ class Body {
     loads_.set_contact_stiffness(of_all(state_.u), roots);
   }
 
+  /// See Loads::push_out.
+  void push_out(const Rows<Real>& inverse_masses, double gain) {
+    if (loads_.push_out(state_, inverse_masses, gain)) follow();
+  }
+
   /// Adds the work of the loads since the last call.
   void add_work_of_loads() { loads_.add_work(state_.u); }
 
