@@ -8,14 +8,16 @@
 
 #include "assembly/method_entry.hpp"
 #include "forces/contact_force.hpp"
-#include "forces/obstacle_shape.hpp"
+#include "forces/triangle_surface.hpp"
 #include "io/case_file.hpp"
+#include "sandglass/simulation.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/sleep.hpp"
 #include "support/allocations.hpp"
 #include "support/case_text.hpp"
+#include "support/kept_run.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/random_scene.hpp"
 #include "support/scenes.hpp"
@@ -190,6 +192,103 @@ TEST(Contact, measures_distances) {
   expect(box, {-2.0, 1.0, 8.0}, std::sqrt(20.0), {-2.0 / std::sqrt(20.0), 0.0, 4.0 / std::sqrt(20.0)});
 }
 
+/// The surface of a box with its centre at the origin: two triangles on each side, as the text of an .obj
+/// file.
+std::string box_surface(const Vector& half_sizes) {
+  std::string text = "# a box\n";
+  for (int corner = 0; corner < 8; ++corner) {
+    text +=
+        fmt::format("v {} {} {}\n", corner & 1 ? half_sizes[0] : -half_sizes[0],
+                    corner & 2 ? half_sizes[1] : -half_sizes[1], corner & 4 ? half_sizes[2] : -half_sizes[2]);
+  }
+  return text + "f 1 3 4 2\nf 5/1 6/1 8/1 7/1\nf 1 2 6\nf 1 6 5\nf 3 7 8 4\nf 1 5 7 3\nf -7 -5 -1\nf 2 8 6\n";
+}
+
+/// The same as an .stl file, as text or binary: of the triangles that an .obj file lists one by one.
+std::string as_stl(const NodalField& corners, bool binary) {
+  std::string text = binary ? std::string(80, ' ') : "solid box\n";
+  const auto add = [&](const auto& value) {
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  if (binary) add(static_cast<std::uint32_t>(corners.size() / 3));
+  for (std::size_t n = 0; n < corners.size(); ++n) {
+    const Vector& X = corners[n];
+    if (binary) {
+      if (n % 3 == 0) add(std::array<float, 3>{});
+      add(std::array{static_cast<float>(X[0]), static_cast<float>(X[1]), static_cast<float>(X[2])});
+      if (n % 3 == 2) add(std::uint16_t{0});
+    } else {
+      text += n % 3 == 0 ? "facet normal 0 0 0\nouter loop\n" : "";
+      text += fmt::format("vertex {} {} {}\n", X[0], X[1], X[2]);
+      text += n % 3 == 2 ? "endloop\nendfacet\n" : "";
+    }
+  }
+  return text;
+}
+
+/// A surface of triangles around a box is as far from every point as the box: from its faces, edges and
+/// corners, inside and outside, read from every kind of file, whichever way its triangles turn.
+TEST(TriangleSurface, is_as_far_as_its_box) {
+  const TemporaryFolder folder;
+  const Vector half{0.5, 1.0, 2.0};
+  const BoxShape box{{0.0, 0.0, 0.0}, half};
+  NodalField corners, turned;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const auto corner = [&](double p, double q) {
+        Vector X{};
+        X[index(axis)] = side * half[index(axis)];
+        X[index((axis + 1) % 3)] = side * p * half[index((axis + 1) % 3)];
+        X[index((axis + 2) % 3)] = q * half[index((axis + 2) % 3)];
+        return X;
+      };
+      for (const auto& [p, q] :
+           {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
+        corners.push_back(corner(p, q));
+    }
+  }
+  for (std::size_t n = 0; n < corners.size(); n += 3)
+    turned.insert(turned.end(), {corners[n], corners[n + 2], corners[n + 1]});
+  const std::vector<TriangleSurface> surfaces{
+      read_triangle_surface(folder.write("box.obj", box_surface(half))),
+      read_triangle_surface(folder.write("text.stl", as_stl(corners, false))),
+      read_triangle_surface(folder.write("turned.stl", as_stl(turned, false))),
+      read_triangle_surface(folder.write("binary.stl", as_stl(corners, true)))};
+  RandomGeometry random(3);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Vector x{random.uniform(-1.0, 1.0), random.uniform(-2.0, 2.0), random.uniform(-4.0, 4.0)};
+    const Gap expected = box.at(x);
+    for (const TriangleSurface& surface : surfaces) {
+      const Gap gap = surface.at(x);
+      EXPECT_NEAR(gap.distance, expected.distance, 1e-14);
+      EXPECT_LT(distance(gap.normal, expected.normal), 1e-12);
+    }
+  }
+  EXPECT_LT(distance(surfaces[0].at({0.5, 0.0, 0.0}).normal, {1.0, 0.0, 0.0}), 1e-14);
+}
+
+TEST(TriangleSurface, rejects_what_is_not_closed) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& name, const std::string& text, const std::string& said) {
+    const auto path = folder.write(name, text);
+    const std::string error = input_error([&] { read_triangle_surface(path); });
+    EXPECT_NE(error.find(name), std::string::npos) << error;
+    EXPECT_NE(error.find(said), std::string::npos) << error;
+  };
+  const std::string box = box_surface({1.0, 1.0, 1.0});
+  expect("open.obj", replaced(box, "f 2 8 6\n", ""), "is open at the edge from ");
+  expect("flipped.obj", replaced(box, "f 2 8 6\n", "f 2 6 8\n"),
+         "or its triangles have opposite orientations");
+  expect("branch.obj", box + "f 2 8 6\n", "the surface branches");
+  expect("flat.obj", box + "f 1 1 2\n", "has no area, and so no normal");
+  expect("lost.obj", box + "f 1 2 9\n", "names a point that is not there");
+  expect("short.obj", "v 1 2\n", "must have three coordinates");
+  expect("empty.stl", "solid nothing\n", "no triangle");
+  expect("box.ply", box, "unknown ending");
+  const std::string missing = input_error([&] { read_triangle_surface(folder / "none.stl"); });
+  EXPECT_NE(missing.find("cannot be read"), std::string::npos) << missing;
+}
+
 /// A column on a fixed foot.
 struct Column {
   Mesh mesh;
@@ -226,6 +325,33 @@ TEST(Contact, presses_a_column_as_derived) {
     EXPECT_NEAR(last.reactions.at("foot")[2], force, 1e-6 * force);
     EXPECT_NEAR(last.contact, 0.5 * E / h * 2.0 * depth * depth, 1e-5 * force * depth);
   }
+}
+
+/// A surface of triangles that a case names presses as the box that it is.
+TEST(TriangleSurface, presses_like_its_box) {
+  const TemporaryFolder folder;
+  folder.write("box.obj", box_surface({0.7, 0.3, 0.2}));
+  Column column({1.0, 1.0, 1.0}, {4, 4, 4}, NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.3});
+  column.description.file = folder / "pressed.toml";
+  column.description.displacements = {{"foot", {}}};
+  Obstacle block{.label = "block", .set = "top", .shape = Obstacle::Shape::box, .point = {0.5, 0.5, 1.21}};
+  block.half_sizes = {0.7, 0.3, 0.2};
+  block.displacement = {0.0, 0.0, -0.1};
+  Obstacle surface = block;
+  surface.shape = Obstacle::Shape::surface;
+  surface.half_sizes = {};
+  surface.file = "box.obj";
+  std::vector<double> forces;
+  for (const Obstacle& one : {block, surface}) {
+    column.description.forces.of<Obstacle>() = {one};
+    Recorder recorder;
+    const Scene scene = column.scene();
+    const Relaxation found = relax(Model(scene, {"tl-perturbation"}), recorder);
+    EXPECT_TRUE(found.converged);
+    forces.push_back(recorder.rows.back().reactions.at("block")[2]);
+  }
+  EXPECT_LT(forces[0], -1.0);
+  EXPECT_NEAR(forces[0], forces[1], 1e-6 * std::abs(forces[0]));
 }
 
 /// Reactions of constraints and obstacles add up to zero in static equilibrium, to the residual: a capsule
@@ -563,6 +689,60 @@ TEST(Contact, presses_at_random) {
     EXPECT_LT(gained, 0.02 * largest) << what;
     EXPECT_LT(depth, 0.5 / 6.0) << what;
   }
+}
+
+/// A run that is resumed from any checkpoint ends with the same bits, anchors of friction included.
+TEST(Contact, resumes_with_the_same_bits) {
+  const auto expect_same = [](const Scene& scene, const auto& solve) {
+    const Model model(scene, {"tl-perturbation"});
+    KeepingRecorder whole;
+    const NodalField answer = solve(model, whole, nullptr);
+    ASSERT_GT(whole.kept().size(), 2U);
+    for (const RunSoFar& kept : whole.kept()) {
+      KeepingRecorder resumed(kept);
+      const NodalField u = solve(model, resumed, &kept.point);
+      EXPECT_EQ(u, answer);
+      EXPECT_EQ(resumed.run().history.size(), whole.run().history.size());
+      EXPECT_EQ(resumed.run().history.back().friction, whole.run().history.back().friction);
+      EXPECT_EQ(resumed.run().history.back().external_work, whole.run().history.back().external_work);
+    }
+  };
+  for (const auto method : both_methods) {
+    Slab slab(method, 2.0 * coefficient, 0.5, 0.2);
+    slab.column.description.dynamics.check_interval = 10;
+    expect_same(slab.column.scene(), [](const Model& model, Observer& observer, const Checkpoint* from) {
+      return integrate(model, observer, from).u;
+    });
+  }
+  Column block({1.0, 1.0, 0.5}, {6, 6, 3}, NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.4});
+  block.description.displacements = {{"foot", {}}};
+  block.description.relaxation.levels = 3;
+  Obstacle tool{.label = "tool", .set = "top", .shape = Obstacle::Shape::sphere, .point = {0.5, 0.5, 0.81}};
+  tool.radius = 0.3;
+  tool.displacement = {0.0, 0.0, -0.1};
+  block.description.forces.of<Obstacle>() = {tool};
+  expect_same(block.scene(), [](const Model& model, Observer& observer, const Checkpoint* from) {
+    return relax(model, observer, from).u;
+  });
+}
+
+/// A simulation reports the force of an obstacle by its name; it moves with the factor.
+TEST(Contact, is_part_of_a_simulation) {
+  const TemporaryFolder folder;
+  const auto path = folder.write(
+      "pressed.toml",
+      replaced(box_case("pressed", "[1.0, 1.0, 1.0]", "[2, 2, 2]"), "\"quasi-static\"", "\"dynamic\"") +
+          "[sets]\nfoot = { z = [0.0, 0.0] }\ntop = { z = [1.0, 1.0] }\n\n[[displacement]]\nset = "
+          "\"foot\"\nvalue = [0.0, 0.0, 0.0]\n\n[[obstacle]]\nname = \"plate\"\nset = \"top\"\nshape = "
+          "\"plane\"\npoint = [0.0, 0.0, 1.0]\nnormal = [0.0, 0.0, -1.0]\ndisplacement = [0.0, 0.0, "
+          "-0.1]\n\n[dynamics]\nduration = 1.0\n");
+  Simulation<double> simulation(path, {.damping = 20.0});
+  simulation.impose(1.0);
+  simulation.advance(1.0);
+  EXPECT_LT(simulation.reaction("plate")[2], -10.0);
+  simulation.settle();
+  EXPECT_NEAR(simulation.reaction("plate")[2], -simulation.reaction("foot")[2],
+              1e-6 * simulation.reaction("foot")[2]);
 }
 
 TEST(Contact, rejects_wrong_input) {

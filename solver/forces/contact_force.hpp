@@ -41,6 +41,9 @@ class ContactForce : public BodyForce {
   /// Moves nodes back onto it.
   virtual void push_out(Factors /*factors*/, const NodalPush& /*nodes*/) const {}
 
+  /// How far it moves at the factor one, m.
+  virtual double travel() const = 0;
+
   /// How the body touches it, from these rows.
   virtual Touch touch(const Row<double>* memory) const = 0;
 

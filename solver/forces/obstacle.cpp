@@ -15,7 +15,8 @@ bool is_given(const Vector& v) {
   return v != Vector{};
 }
 
-ObstacleShape shape_of(const Obstacle& given) {
+/// `file` is the case's.
+ObstacleShape shape_of(const Obstacle& given, const std::filesystem::path& file) {
   const Vector axis = difference(given.end, given.point);
   switch (given.shape) {
     case Obstacle::Shape::plane:
@@ -28,6 +29,10 @@ ObstacleShape shape_of(const Obstacle& given) {
       return RoundShape{given.point, axis, -INFINITY, INFINITY, given.radius};
     case Obstacle::Shape::box:
       return BoxShape{given.point, given.half_sizes};
+    case Obstacle::Shape::surface: {
+      const auto path = file.parent_path() / given.file;
+      return SurfaceShape{std::make_shared<TriangleSurface>(read_triangle_surface(path)), given.point};
+    }
   }
   return {};
 }
@@ -57,7 +62,8 @@ std::optional<BrokenRule> Obstacle::broken_rule() const {
   if (label.empty() || label.find('/') != std::string::npos)
     return BrokenRule{"name", fmt::format("= '{}' must be a word without '/'", label)};
   const std::string_view word = words_of(shape)[static_cast<std::size_t>(shape)];
-  const bool is_plane = shape == Shape::plane, is_box = shape == Shape::box;
+  const bool is_plane = shape == Shape::plane, is_box = shape == Shape::box,
+             is_file = shape == Shape::surface;
   const bool has_axis = shape == Shape::capsule || shape == Shape::cylinder;
   struct Need {
     const char* parameter;
@@ -67,7 +73,8 @@ std::optional<BrokenRule> Obstacle::broken_rule() const {
   for (const auto& [parameter, needed, given, rule] :
        {Need{"normal", is_plane, is_given(normal), "must have a length"},
         Need{"end", has_axis, has_axis ? end != point : is_given(end), "must differ from point"},
-        Need{"radius", !is_plane && !is_box, radius > 0.0, "must be positive"},
+        Need{"file", is_file, !file.empty(), "must name a closed surface"},
+        Need{"radius", !is_plane && !is_box && !is_file, radius > 0.0, "must be positive"},
         Need{"half_sizes", is_box,
              is_box ? *std::ranges::min_element(half_sizes) > 0.0 : is_given(half_sizes),
              "must be positive"}}) {
@@ -101,7 +108,8 @@ void Obstacle::resolve(ForceResolver& resolver) const {
     touching.push_back({node, resolver.points[at(node)], penalty * scale.modulus / scale.edge * area});
   const Vector start = sum({}, curve.at(0.0, 0.0), displacement);
   const auto make = method == Method::penalty ? make_penalty_contact : make_kinematic_contact;
-  auto contact = make(std::move(touching), *this, shape_of(*this), resolver.number_of(curve), start);
+  auto contact =
+      make(std::move(touching), *this, shape_of(*this, resolver.file), resolver.number_of(curve), start);
   const auto depth_of = [&](const TouchingNode& one) { return contact->depth_at_start(one); };
   const TouchingNode deepest = *std::ranges::max_element(contact->touching(), {}, depth_of);
   constexpr double rounding = 1e-6;  // of coordinates in files, over the edge

@@ -15,9 +15,9 @@ struct Obstacle {
   static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = false;
 
-  enum class Shape { plane, sphere, capsule, cylinder, box };
-  friend constexpr std::array<std::string_view, 5> words_of(Shape /*type*/) {
-    return {"plane", "sphere", "capsule", "cylinder", "box"};
+  enum class Shape { plane, sphere, capsule, cylinder, box, surface };
+  friend constexpr std::array<std::string_view, 6> words_of(Shape /*type*/) {
+    return {"plane", "sphere", "capsule", "cylinder", "box", "surface"};
   }
 
   /// Penalty: a force in proportion to the depth. Kinematic: in every step, nodes are moved back onto it.
@@ -29,11 +29,12 @@ struct Obstacle {
   std::string label;
   std::string set;
   Shape shape = Shape::plane;
-  Vector point{};         ///< m
-  Vector end{};           ///< m
-  Vector normal{};        ///< of any length
-  double radius = 0.0;    ///< m
-  Vector half_sizes{};    ///< m
+  Vector point{};       ///< m
+  Vector end{};         ///< m
+  Vector normal{};      ///< of any length
+  double radius = 0.0;  ///< m
+  Vector half_sizes{};  ///< m
+  std::string file;
   bool inside = false;    ///< whether the body is inside of it, as in a cavity
   Vector displacement{};  ///< at the factor one, m
   LoadCurve curve = {};
@@ -48,7 +49,9 @@ struct Obstacle {
         Parameter{&O::set, "set", "-", Range::any(), "node set with the boundary faces that may touch it"},
         Parameter{&O::shape, "shape", "-", Range::any(), "its shape"},
         Parameter{&O::point, "point", "m", Range::any(),
-                  "a point of the plane, the centre of the sphere or box, or one end of the axis", false},
+                  "a point of the plane, the centre of the sphere or box, one end of the axis, or the origin "
+                  "of the file",
+                  false},
         Parameter{&O::end, "end", "m", Range::any(),
                   "the other end of the axis of a capsule or of a cylinder, which is infinite along it",
                   false},
@@ -57,6 +60,8 @@ struct Obstacle {
                   false},
         Parameter{&O::half_sizes, "half_sizes", "m", Range::at_least(0.0),
                   "half the edge lengths of the box, along the coordinate axes", false},
+        Parameter{&O::file, "file", "-", Range::any(), "of a closed surface of triangles in m, .stl or .obj",
+                  false},
         Parameter{&O::inside, "inside", "-", Range::any(), "whether the body is inside of it, as in a cavity",
                   false},
         Parameter{&O::displacement, "displacement", "m", Range::any(), "how far it moves", false},

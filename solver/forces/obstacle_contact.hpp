@@ -2,7 +2,7 @@
 
 #include "forces/contact_force.hpp"
 #include "forces/obstacle.hpp"
-#include "forces/obstacle_shape.hpp"
+#include "forces/triangle_surface.hpp"
 
 namespace sandglass {
 
@@ -33,6 +33,8 @@ class ObstacleContact : public ContactForce {
     return -facing_body(std::visit([&](const auto& s) { return s.at(difference(one.X, start_)); }, shape_))
                 .distance;
   }
+
+  double travel() const final { return length(obstacle_.displacement); }
 
   Touch touch(const Row<double>* memory) const final {
     const Row<double>&pushes = memory[0], &moves = memory[1];

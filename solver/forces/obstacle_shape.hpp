@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "mesh/mesh.hpp"
 
@@ -78,7 +77,5 @@ struct BoxShape {
     return {beyond[nearest], normal};
   }
 };
-
-using ObstacleShape = std::variant<PlaneShape, RoundShape, BoxShape>;
 
 }  // namespace sandglass

@@ -84,6 +84,15 @@ class Body {
   /// See Loads::potential, J.
   double load_potential() const { return loads_.potential(of_all(state_.u)); }
 
+  /// How the body touched an obstacle at the last evaluation; none if there is no obstacle of this name.
+  std::optional<Touch> touch(std::string_view obstacle) const {
+    std::optional<Touch> found;
+    loads_.for_each_touch([&](const Touch& touch) {
+      if (touch.name == obstacle) found = touch;
+    });
+    return found;
+  }
+
   /// The sums over all obstacles of energies, and the largest depth, at the last evaluation.
   Touch touch() const;
 

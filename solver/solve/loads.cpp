@@ -123,9 +123,13 @@ Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Re
   for (const auto* load : loads_) {
     if (load->traits().drives) load->add_forces(changes, motion, by_node(sums.data()));
   }
-  for (const ContactForce* contact : contacts_) contact->add_forces(factors, motion, by_node(sums.data()));
-  for (std::size_t k = 0; k < touching_.size(); ++k) {
-    for (std::size_t i = 0; i < 3; ++i) sums[k][i] -= touching_[k][i];
+  Rows<double> before(touching_.size());
+  for (const ContactForce* contact : contacts_) {
+    contact->add_forces(factors, motion, by_node(sums.data()));
+    contact->add_forces(factors_, motion, by_node(before.data()));
+  }
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) sums[k][i] -= before[k][i];
   }
   Rows<Real> change(u.size());
   for (std::size_t k = 0; k < rows_.size(); ++k) {
