@@ -8,15 +8,18 @@
 
 #include "assembly/method_entry.hpp"
 #include "forces/contact_force.hpp"
-#include "forces/obstacle_shape.hpp"
+#include "forces/triangle_surface.hpp"
 #include "io/case_file.hpp"
+#include "sandglass/simulation.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/sleep.hpp"
 #include "support/allocations.hpp"
 #include "support/case_text.hpp"
+#include "support/kept_run.hpp"
 #include "support/random_hexahedra.hpp"
+#include "support/random_scene.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -189,6 +192,103 @@ TEST(Contact, measures_distances) {
   expect(box, {-2.0, 1.0, 8.0}, std::sqrt(20.0), {-2.0 / std::sqrt(20.0), 0.0, 4.0 / std::sqrt(20.0)});
 }
 
+/// The surface of a box with its centre at the origin: two triangles on each side, as the text of an .obj
+/// file.
+std::string box_surface(const Vector& half_sizes) {
+  std::string text = "# a box\n";
+  for (int corner = 0; corner < 8; ++corner) {
+    text +=
+        fmt::format("v {} {} {}\n", corner & 1 ? half_sizes[0] : -half_sizes[0],
+                    corner & 2 ? half_sizes[1] : -half_sizes[1], corner & 4 ? half_sizes[2] : -half_sizes[2]);
+  }
+  return text + "f 1 3 4 2\nf 5/1 6/1 8/1 7/1\nf 1 2 6\nf 1 6 5\nf 3 7 8 4\nf 1 5 7 3\nf -7 -5 -1\nf 2 8 6\n";
+}
+
+/// The same as an .stl file, as text or binary: of the triangles that an .obj file lists one by one.
+std::string as_stl(const NodalField& corners, bool binary) {
+  std::string text = binary ? std::string(80, ' ') : "solid box\n";
+  const auto add = [&](const auto& value) {
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  if (binary) add(static_cast<std::uint32_t>(corners.size() / 3));
+  for (std::size_t n = 0; n < corners.size(); ++n) {
+    const Vector& X = corners[n];
+    if (binary) {
+      if (n % 3 == 0) add(std::array<float, 3>{});
+      add(std::array{static_cast<float>(X[0]), static_cast<float>(X[1]), static_cast<float>(X[2])});
+      if (n % 3 == 2) add(std::uint16_t{0});
+    } else {
+      text += n % 3 == 0 ? "facet normal 0 0 0\nouter loop\n" : "";
+      text += fmt::format("vertex {} {} {}\n", X[0], X[1], X[2]);
+      text += n % 3 == 2 ? "endloop\nendfacet\n" : "";
+    }
+  }
+  return text;
+}
+
+/// A surface of triangles around a box is as far from every point as the box: from its faces, edges and
+/// corners, inside and outside, read from every kind of file, whichever way its triangles turn.
+TEST(TriangleSurface, is_as_far_as_its_box) {
+  const TemporaryFolder folder;
+  const Vector half{0.5, 1.0, 2.0};
+  const BoxShape box{{0.0, 0.0, 0.0}, half};
+  NodalField corners, turned;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const auto corner = [&](double p, double q) {
+        Vector X{};
+        X[index(axis)] = side * half[index(axis)];
+        X[index((axis + 1) % 3)] = side * p * half[index((axis + 1) % 3)];
+        X[index((axis + 2) % 3)] = q * half[index((axis + 2) % 3)];
+        return X;
+      };
+      for (const auto& [p, q] :
+           {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
+        corners.push_back(corner(p, q));
+    }
+  }
+  for (std::size_t n = 0; n < corners.size(); n += 3)
+    turned.insert(turned.end(), {corners[n], corners[n + 2], corners[n + 1]});
+  const std::vector<TriangleSurface> surfaces{
+      read_triangle_surface(folder.write("box.obj", box_surface(half))),
+      read_triangle_surface(folder.write("text.stl", as_stl(corners, false))),
+      read_triangle_surface(folder.write("turned.stl", as_stl(turned, false))),
+      read_triangle_surface(folder.write("binary.stl", as_stl(corners, true)))};
+  RandomGeometry random(3);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Vector x{random.uniform(-1.0, 1.0), random.uniform(-2.0, 2.0), random.uniform(-4.0, 4.0)};
+    const Gap expected = box.at(x);
+    for (const TriangleSurface& surface : surfaces) {
+      const Gap gap = surface.at(x);
+      EXPECT_NEAR(gap.distance, expected.distance, 1e-14);
+      EXPECT_LT(distance(gap.normal, expected.normal), 1e-12);
+    }
+  }
+  EXPECT_LT(distance(surfaces[0].at({0.5, 0.0, 0.0}).normal, {1.0, 0.0, 0.0}), 1e-14);
+}
+
+TEST(TriangleSurface, rejects_what_is_not_closed) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& name, const std::string& text, const std::string& said) {
+    const auto path = folder.write(name, text);
+    const std::string error = input_error([&] { read_triangle_surface(path); });
+    EXPECT_NE(error.find(name), std::string::npos) << error;
+    EXPECT_NE(error.find(said), std::string::npos) << error;
+  };
+  const std::string box = box_surface({1.0, 1.0, 1.0});
+  expect("open.obj", replaced(box, "f 2 8 6\n", ""), "is open at the edge from ");
+  expect("flipped.obj", replaced(box, "f 2 8 6\n", "f 2 6 8\n"),
+         "or its triangles have opposite orientations");
+  expect("branch.obj", box + "f 2 8 6\n", "the surface branches");
+  expect("flat.obj", box + "f 1 1 2\n", "has no area, and so no normal");
+  expect("lost.obj", box + "f 1 2 9\n", "names a point that is not there");
+  expect("short.obj", "v 1 2\n", "must have three coordinates");
+  expect("empty.stl", "solid nothing\n", "no triangle");
+  expect("box.ply", box, "unknown ending");
+  const std::string missing = input_error([&] { read_triangle_surface(folder / "none.stl"); });
+  EXPECT_NE(missing.find("cannot be read"), std::string::npos) << missing;
+}
+
 /// A column on a fixed foot.
 struct Column {
   Mesh mesh;
@@ -225,6 +325,33 @@ TEST(Contact, presses_a_column_as_derived) {
     EXPECT_NEAR(last.reactions.at("foot")[2], force, 1e-6 * force);
     EXPECT_NEAR(last.contact, 0.5 * E / h * 2.0 * depth * depth, 1e-5 * force * depth);
   }
+}
+
+/// A surface of triangles that a case names presses as the box that it is.
+TEST(TriangleSurface, presses_like_its_box) {
+  const TemporaryFolder folder;
+  folder.write("box.obj", box_surface({0.7, 0.3, 0.2}));
+  Column column({1.0, 1.0, 1.0}, {4, 4, 4}, NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.3});
+  column.description.file = folder / "pressed.toml";
+  column.description.displacements = {{"foot", {}}};
+  Obstacle block{.label = "block", .set = "top", .shape = Obstacle::Shape::box, .point = {0.5, 0.5, 1.21}};
+  block.half_sizes = {0.7, 0.3, 0.2};
+  block.displacement = {0.0, 0.0, -0.1};
+  Obstacle surface = block;
+  surface.shape = Obstacle::Shape::surface;
+  surface.half_sizes = {};
+  surface.file = "box.obj";
+  std::vector<double> forces;
+  for (const Obstacle& one : {block, surface}) {
+    column.description.forces.of<Obstacle>() = {one};
+    Recorder recorder;
+    const Scene scene = column.scene();
+    const Relaxation found = relax(Model(scene, {"tl-perturbation"}), recorder);
+    EXPECT_TRUE(found.converged);
+    forces.push_back(recorder.rows.back().reactions.at("block")[2]);
+  }
+  EXPECT_LT(forces[0], -1.0);
+  EXPECT_NEAR(forces[0], forces[1], 1e-6 * std::abs(forces[0]));
 }
 
 /// Reactions of constraints and obstacles add up to zero in static equilibrium, to the residual: a capsule
@@ -381,6 +508,241 @@ TEST(Contact, takes_steps_like_any_force) {
     return integrate(Model(scene, {"tl-perturbation", {}, Precision::double_precision, threads}), silent).u;
   };
   EXPECT_EQ(moved(1), moved(2));
+}
+
+/// The sum of m u over m.
+Vector centre_of(const NodalField& field, const std::vector<double>& masses) {
+  Vector sum_of_all{};
+  double mass = 0.0;
+  for (std::size_t n = 0; n < field.size(); ++n) {
+    mass += masses[n];
+    for (std::size_t i = 0; i < 3; ++i) sum_of_all[i] += masses[n] * field[n][i];
+  }
+  for (double& x : sum_of_all) x /= mass;
+  return sum_of_all;
+}
+
+constexpr double coefficient = 0.3, gravity = 10.0;
+
+/// A flat block on rough ground, under a weight that pulls it sideways by a share of itself.
+struct Slab {
+  Column column{{1.0, 1.0, 0.2}, {4, 4, 2}, NeoHookean{.young_modulus = 1e6, .poisson_ratio = 0.3}};
+
+  Slab(Obstacle::Method method, double share, double speed, double duration) {
+    Case& d = column.description;
+    d.quasi_static = false;
+    d.forces.of<Gravity>() = {{{share * gravity, 0.0, -gravity}, {{0.0, 1.0}, {1.0, 1.0}}}};
+    Obstacle rough = ground();
+    rough.friction = coefficient;
+    rough.method = method;
+    d.forces.of<Obstacle>() = {rough};
+    if (speed > 0.0) d.velocities = {{.set = "", .value = {speed, 0.0, 0.0}}};
+    d.dynamics.duration = duration;
+    d.dynamics.check_interval = 1;
+  }
+};
+
+constexpr std::array both_methods{Obstacle::Method::penalty, Obstacle::Method::kinematic};
+
+/// Friction stops a block after the time v / (mu g), on the way v^2 / (2 mu g), and takes its energy. It
+/// bounces on its own elasticity, which a few percent allow for.
+TEST(Friction, stops_a_block_as_derived) {
+  for (const auto method : both_methods) {
+    const double speed = 2.0, time = speed / (coefficient * gravity), way = 0.5 * speed * time;
+    const Slab slab(method, 0.0, speed, 1.5 * time);
+    const Scene scene = slab.column.scene();
+    const Model model(scene, {"tl-perturbation"});
+    Recorder recorder;
+    const Motion motion = integrate(model, recorder);
+    const double mass = 200.0, energy = 0.5 * mass * speed * speed;
+    EXPECT_NEAR(centre_of(motion.u, model.masses())[0], way, 0.03 * way);
+    EXPECT_NEAR(recorder.rows.back().friction, energy, 0.05 * energy);
+    double impulse = 0.0, before = 0.0;
+    for (std::size_t n = 1; n < recorder.rows.size(); ++n) {
+      const HistoryRow& row = recorder.rows[n];
+      const Vector& force = row.reactions.at("ground");
+      EXPECT_LE(std::hypot(force[0], force[1]), coefficient * force[2] * (1.0 + 1e-9) + 1e-9);
+      EXPECT_LE(total_energy(row) - row.external_work, 1.01 * total_energy(recorder.rows.front()));
+      EXPECT_GE(row.friction, before - 1e-3 * energy);
+      before = row.friction;
+      impulse += force[0] * (row.time - recorder.rows[n - 1].time);
+    }
+    EXPECT_NEAR(impulse, -mass * speed, 0.03 * mass * speed);
+  }
+}
+
+/// Below the coefficient of friction a block sticks: once its vibrations are damped it does not creep at all.
+/// Above, it slides with the difference.
+TEST(Friction, holds_a_block_below_its_coefficient) {
+  for (const auto method : both_methods) {
+    Slab slab(method, 0.8 * coefficient, 0.0, 4.0);
+    slab.column.description.dynamics.damping = 40.0;
+    slab.column.description.dynamics.frames = 4;
+    const Scene scene = slab.column.scene();
+    const Model model(scene, {"tl-perturbation"});
+    Recorder recorder;
+    integrate(model, recorder);
+    const NodalField &middle = recorder.frames[2].u, &end = recorder.frames[4].u;
+    for (std::size_t n = 0; n < end.size(); ++n) EXPECT_LT(distance(middle[n], end[n]), 1e-10) << n;
+    const Vector force = recorder.rows.back().reactions.at("ground");
+    EXPECT_NEAR(force[2], 200.0 * gravity, 1e-3);
+    EXPECT_NEAR(force[0], -0.8 * coefficient * force[2], 1e-3);
+  }
+  for (const auto method : both_methods) {
+    const double share = 2.0 * coefficient, time = 1.0;
+    const Slab slab(method, share, 0.0, time);
+    const Scene scene = slab.column.scene();
+    const Model model(scene, {"tl-perturbation"});
+    Recorder silent;
+    const Motion motion = integrate(model, silent);
+    const double speed = (share - coefficient) * gravity * time;
+    EXPECT_NEAR(centre_of(motion.v, model.masses())[0], speed, 0.03 * speed);
+  }
+}
+
+/// With the kinematic method no node is inside, nothing is held back, and the bar on the wall is stopped as
+/// by the penalty; nodes that hit it lose the share of the kinetic energy that is in them, an
+/// eightieth.
+TEST(KinematicContact, stops_a_bar_as_derived) {
+  const double L = 0.2, a = 0.02, E = 2e11, rho = 8000.0, v = 100.0, c = std::sqrt(E / rho),
+               lasts = 2.0 * L / c;
+  Column bar({a, a, L}, {2, 2, 40}, NeoHookean{.young_modulus = E, .poisson_ratio = 0.0});
+  bar.description.materials.front().density = rho;
+  bar.description.quasi_static = false;
+  bar.description.velocities = {{.set = "", .value = {0.0, 0.0, -v}}};
+  Obstacle wall = ground();
+  wall.method = Obstacle::Method::kinematic;
+  bar.description.forces.of<Obstacle>() = {wall};
+  bar.description.dynamics.duration = 1.5 * lasts;
+  bar.description.dynamics.check_interval = 1;
+  const Scene scene = bar.scene();
+  const Model model(scene, {"linear"});
+  Recorder recorder;
+  const Motion motion = integrate(model, recorder);
+  const double start = total_energy(recorder.rows.front()), mass = rho * L * a * a;
+  double impulse = 0.0;
+  for (std::size_t n = 1; n < recorder.rows.size(); ++n) {
+    const HistoryRow& row = recorder.rows[n];
+    EXPECT_NEAR(total_energy(row), start, 0.01 * start);
+    EXPECT_LT(row.friction, 1.1 * start / 80.0);
+    EXPECT_GE(row.reactions.at("ground")[2], 0.0);
+    EXPECT_EQ(row.depth, 0.0);
+    impulse += row.reactions.at("ground")[2] * (row.time - recorder.rows[n - 1].time);
+  }
+  EXPECT_NEAR(impulse, 2.0 * mass * v, 0.01 * 2.0 * mass * v);
+  EXPECT_NEAR(centre_of(motion.v, model.masses())[2], v, 0.03 * v);
+  for (const Vector& u : motion.u) EXPECT_GT(u[2], 0.0);
+}
+
+/// Bodies are pressed at random: by every shape, at speeds up to a tenth of the shear wave's, with friction
+/// and without, by both methods, up to Poisson's ratio 0.49. Nothing is pushed through, and no energy is
+/// gained.
+TEST(Contact, presses_at_random) {
+  using Shape = Obstacle::Shape;
+  const long scenes = from_environment("SANDGLASS_SCENES", 100);
+  RandomGeometry random(47);
+  for (long number = 0; number < scenes; ++number) {
+    const double ratio =
+        std::array{0.0, 0.3, 0.45, 0.49}[static_cast<std::size_t>(random.uniform(0.0, 3.999))];
+    Column block({1.0, 1.0, 0.5}, {6, 6, 3}, NeoHookean{.young_modulus = 1e4, .poisson_ratio = ratio});
+    Case& d = block.description;
+    d.quasi_static = false;
+    d.displacements = {{"foot", {}}};
+    Obstacle tool{.label = "tool", .set = "top"};
+    tool.shape = static_cast<Shape>(static_cast<int>(random.uniform(0.0, 4.999)));
+    tool.radius = random.uniform(0.2, 0.4);  // smaller ones may pass between nodes
+    tool.point = {random.uniform(0.3, 0.7), random.uniform(0.3, 0.7), 0.51 + tool.radius};
+    if (tool.shape == Shape::plane) tool.point[2] = 0.51, tool.normal = {0.0, 0.0, -1.0};
+    if (tool.shape == Shape::box) {
+      tool.half_sizes = {random.uniform(0.1, 0.3), random.uniform(0.1, 0.3), 0.2};
+      tool.point[2] = 0.71;
+    }
+    if (tool.shape == Shape::capsule || tool.shape == Shape::cylinder)
+      tool.end = {tool.point[0] + random.uniform(0.1, 0.4), tool.point[1] + random.uniform(-0.4, 0.4),
+                  tool.point[2]};
+    if (tool.shape == Shape::plane || tool.shape == Shape::box) tool.radius = 0.0;
+    tool.friction = random.uniform(-0.5, 0.5) > 0.0 ? random.uniform(0.1, 0.8) : 0.0;
+    tool.method = random.uniform(-1.0, 1.0) > 0.0 ? Obstacle::Method::penalty : Obstacle::Method::kinematic;
+    tool.displacement = {random.uniform(-0.05, 0.05), 0.0, -random.uniform(0.06, 0.12)};
+    d.forces.of<Obstacle>() = {tool};
+    const double waves = std::sqrt(1e4 / 1000.0 / 3.0);
+    d.dynamics.duration = 0.12 / (waves * random.uniform(0.01, 0.1));
+    d.dynamics.check_interval = 10;
+    const std::string what =
+        fmt::format("scene {}: shape {}, method {}, friction {:.2f}, nu {}", number,
+                    static_cast<int>(tool.shape), static_cast<int>(tool.method), tool.friction, ratio);
+    const Scene scene = block.scene();
+    Recorder recorder;
+    try {
+      integrate(Model(scene, {"tl-perturbation"}), recorder);
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << what << ": " << error.what();
+      continue;
+    }
+    double largest = 0.0, gained = 0.0, depth = 0.0;
+    for (const HistoryRow& row : recorder.rows) {
+      largest = std::max(largest, total_energy(row));
+      gained = std::max(gained, total_energy(row) - row.external_work);
+      depth = std::max(depth, row.depth);
+    }
+    EXPECT_GT(largest, 0.0) << what;
+    EXPECT_LT(gained, 0.02 * largest) << what;
+    EXPECT_LT(depth, 0.5 / 6.0) << what;
+  }
+}
+
+/// A run that is resumed from any checkpoint ends with the same bits, anchors of friction included.
+TEST(Contact, resumes_with_the_same_bits) {
+  const auto expect_same = [](const Scene& scene, const auto& solve) {
+    const Model model(scene, {"tl-perturbation"});
+    KeepingRecorder whole;
+    const NodalField answer = solve(model, whole, nullptr);
+    ASSERT_GT(whole.kept().size(), 2U);
+    for (const RunSoFar& kept : whole.kept()) {
+      KeepingRecorder resumed(kept);
+      const NodalField u = solve(model, resumed, &kept.point);
+      EXPECT_EQ(u, answer);
+      EXPECT_EQ(resumed.run().history.size(), whole.run().history.size());
+      EXPECT_EQ(resumed.run().history.back().friction, whole.run().history.back().friction);
+      EXPECT_EQ(resumed.run().history.back().external_work, whole.run().history.back().external_work);
+    }
+  };
+  for (const auto method : both_methods) {
+    Slab slab(method, 2.0 * coefficient, 0.5, 0.2);
+    slab.column.description.dynamics.check_interval = 10;
+    expect_same(slab.column.scene(), [](const Model& model, Observer& observer, const Checkpoint* from) {
+      return integrate(model, observer, from).u;
+    });
+  }
+  Column block({1.0, 1.0, 0.5}, {6, 6, 3}, NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.4});
+  block.description.displacements = {{"foot", {}}};
+  block.description.relaxation.levels = 3;
+  Obstacle tool{.label = "tool", .set = "top", .shape = Obstacle::Shape::sphere, .point = {0.5, 0.5, 0.81}};
+  tool.radius = 0.3;
+  tool.displacement = {0.0, 0.0, -0.1};
+  block.description.forces.of<Obstacle>() = {tool};
+  expect_same(block.scene(), [](const Model& model, Observer& observer, const Checkpoint* from) {
+    return relax(model, observer, from).u;
+  });
+}
+
+/// A simulation reports the force of an obstacle by its name; it moves with the factor.
+TEST(Contact, is_part_of_a_simulation) {
+  const TemporaryFolder folder;
+  const auto path = folder.write(
+      "pressed.toml",
+      replaced(box_case("pressed", "[1.0, 1.0, 1.0]", "[2, 2, 2]"), "\"quasi-static\"", "\"dynamic\"") +
+          "[sets]\nfoot = { z = [0.0, 0.0] }\ntop = { z = [1.0, 1.0] }\n\n[[displacement]]\nset = "
+          "\"foot\"\nvalue = [0.0, 0.0, 0.0]\n\n[[obstacle]]\nname = \"plate\"\nset = \"top\"\nshape = "
+          "\"plane\"\npoint = [0.0, 0.0, 1.0]\nnormal = [0.0, 0.0, -1.0]\ndisplacement = [0.0, 0.0, "
+          "-0.1]\n\n[dynamics]\nduration = 1.0\n");
+  Simulation<double> simulation(path, {.damping = 20.0});
+  simulation.impose(1.0);
+  simulation.advance(1.0);
+  EXPECT_LT(simulation.reaction("plate")[2], -10.0);
+  simulation.settle();
+  EXPECT_NEAR(simulation.reaction("plate")[2], -simulation.reaction("foot")[2],
+              1e-6 * simulation.reaction("foot")[2]);
 }
 
 TEST(Contact, rejects_wrong_input) {

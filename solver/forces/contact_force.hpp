@@ -8,10 +8,11 @@ namespace sandglass {
 struct Touch {
   std::string_view name = {};  ///< of the obstacle
   Vector force = {};           ///< on the body, N
-  Vector moved = {};           ///< displacement of the obstacle, m
+  Vector moved = {};           ///< displacement of the obstacle on which this force works, m
   double depth = 0.0;          ///< the largest of a node, m
   double stored = 0.0;         ///< energy of the contact, J
   double dissipated = 0.0;     ///< since the start, J
+  double worked = 0.0;         ///< by an obstacle that moves nodes, since the start, J
 };
 
 /// Nodes that an obstacle may move back onto itself within a step.
@@ -34,8 +35,14 @@ class ContactForce : public BodyForce {
   virtual void add_contact(Factors factors, NodalRows u, Row<double>* memory,
                            AtNodes<Row<double>> forces) const = 0;
 
-  /// Moves nodes back onto it, if that is what it does instead of adding forces.
+  /// Whether it moves nodes within steps instead of adding forces.
+  virtual bool moves_nodes() const { return false; }
+
+  /// Moves nodes back onto it.
   virtual void push_out(Factors /*factors*/, const NodalPush& /*nodes*/) const {}
+
+  /// How far it moves at the factor one, m.
+  virtual double travel() const = 0;
 
   /// How the body touches it, from these rows.
   virtual Touch touch(const Row<double>* memory) const = 0;

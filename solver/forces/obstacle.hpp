@@ -7,32 +7,40 @@
 
 namespace sandglass {
 
-/// A rigid obstacle that pushes boundary nodes out of itself, by a force in proportion to their depth, and
-/// moves along a straight line. The pressure acts on the undeformed area of the boundary, at its nodes.
+/// A rigid obstacle that keeps boundary nodes out of itself, and moves along a straight line. The pressure of
+/// a penalty acts on the undeformed area of the boundary, at its nodes.
 struct Obstacle {
   static constexpr std::string_view name = "obstacle";
   static constexpr std::string_view summary = "a rigid obstacle that the body touches";
   static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = false;
 
-  enum class Shape { plane, sphere, capsule, cylinder, box, ellipsoid };
-  friend constexpr std::array<std::string_view, 6> words_of(Shape /*type*/) {
-    return {"plane", "sphere", "capsule", "cylinder", "box", "ellipsoid"};
+  enum class Shape { plane, sphere, capsule, cylinder, box, ellipsoid, surface };
+  friend constexpr std::array<std::string_view, 7> words_of(Shape /*type*/) {
+    return {"plane", "sphere", "capsule", "cylinder", "box", "ellipsoid", "surface"};
+  }
+
+  /// Penalty: a force in proportion to the depth. Kinematic: in every step, nodes are moved back onto it.
+  enum class Method { penalty, kinematic };
+  friend constexpr std::array<std::string_view, 2> words_of(Method /*type*/) {
+    return {"penalty", "kinematic"};
   }
 
   std::string label;
   std::string set;
   Shape shape = Shape::plane;
-  Vector point{};         ///< m
-  Vector end{};           ///< m
-  Vector normal{};        ///< of any length
-  double radius = 0.0;    ///< m
-  Vector half_sizes{};    ///< m
+  Vector point{};       ///< m
+  Vector end{};         ///< m
+  Vector normal{};      ///< of any length
+  double radius = 0.0;  ///< m
+  Vector half_sizes{};  ///< m
+  std::string file;
   bool inside = false;    ///< whether the body is inside of it, as in a cavity
   Vector displacement{};  ///< at the factor one, m
   LoadCurve curve = {};
   double friction = 0.0;  ///< Coulomb's coefficient
   double penalty = 1.0;   ///< see parameters
+  Method method = Method::penalty;
 
   static constexpr auto parameters() {
     using O = Obstacle;
@@ -40,9 +48,11 @@ struct Obstacle {
         Parameter{&O::label, "name", "-", Range::any(), "under which its force is reported"},
         Parameter{&O::set, "set", "-", Range::any(), "node set with the boundary faces that may touch it"},
         Parameter{&O::shape, "shape", "-", Range::any(), "its shape"},
-        Parameter{&O::point, "point", "m", Range::any(),
-                  "a point of the plane, the centre of the sphere, box or ellipsoid, or one end of the axis",
-                  false},
+        Parameter{
+            &O::point, "point", "m", Range::any(),
+            "a point of the plane, the centre of the sphere, box or ellipsoid, one end of the axis, or the "
+            "origin of the file",
+            false},
         Parameter{&O::end, "end", "m", Range::any(),
                   "the other end of the axis of a capsule or of a cylinder, which is infinite along it",
                   false},
@@ -51,6 +61,8 @@ struct Obstacle {
                   false},
         Parameter{&O::half_sizes, "half_sizes", "m", Range::at_least(0.0),
                   "half the sizes of the box or ellipsoid along the coordinate axes", false},
+        Parameter{&O::file, "file", "-", Range::any(), "of a closed surface of triangles in m, .stl or .obj",
+                  false},
         Parameter{&O::inside, "inside", "-", Range::any(), "whether the body is inside of it, as in a cavity",
                   false},
         Parameter{&O::displacement, "displacement", "m", Range::any(), "how far it moves", false},
@@ -61,7 +73,9 @@ struct Obstacle {
             &O::penalty, "penalty", "-", Range::positive(),
             "pressure over (lambda + 2 mu) depth / h, with the softest material and the shortest edge h of "
             "the elements that may touch it",
-            false}};
+            false},
+        Parameter{&O::method, "method", "-", Range::any(),
+                  "penalty, or kinematic in motions: every step moves nodes back onto it", false}};
   }
   std::optional<BrokenRule> broken_rule() const;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "mesh/mesh.hpp"
 
@@ -113,7 +112,5 @@ struct EllipsoidShape {
     return {size > 0.0 ? t * size : -smallest, direction_of(slope, size)};
   }
 };
-
-using ObstacleShape = std::variant<PlaneShape, RoundShape, BoxShape, EllipsoidShape>;
 
 }  // namespace sandglass

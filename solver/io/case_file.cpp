@@ -160,6 +160,8 @@ std::vector<std::filesystem::path> files_of(const Case& description) {
   for (const CaseMaterial& material : description.materials) {
     if (const auto* listed = std::get_if<ListedFibres>(&material.fibres)) files.push_back(listed->file);
   }
+  for (const Obstacle& obstacle : description.forces.of<Obstacle>())
+    if (!obstacle.file.empty()) files.push_back(description.file.parent_path() / obstacle.file);
   return files;
 }
 

@@ -269,6 +269,7 @@ std::span<const int> Simulation<Real>::row_of_node() const {
 
 template <class Real>
 std::array<double, 3> Simulation<Real>::reaction(const std::string& set) const {
+  if (const auto touch = parts_->body().touch(set)) return touch->force;
   std::array<double, 3> sum{};
   for (const auto& [constraint, node, component] : parts_->problem().driven(set)) {
     sum[component] += parts_->body().reactions()[constraint];

@@ -84,12 +84,26 @@ class Body {
   /// See Loads::potential, J.
   double load_potential() const { return loads_.potential(of_all(state_.u)); }
 
+  /// How the body touched an obstacle at the last evaluation; none if there is no obstacle of this name.
+  std::optional<Touch> touch(std::string_view obstacle) const {
+    std::optional<Touch> found;
+    loads_.for_each_touch([&](const Touch& touch) {
+      if (touch.name == obstacle) found = touch;
+    });
+    return found;
+  }
+
   /// The sums over all obstacles of energies, and the largest depth, at the last evaluation.
   Touch touch() const;
 
   /// See Loads::set_contact_stiffness.
   void set_contact_stiffness(Rows<float>& roots) const {
     loads_.set_contact_stiffness(of_all(state_.u), roots);
+  }
+
+  /// See Loads::push_out.
+  void push_out(const Rows<Real>& inverse_masses, double gain) {
+    if (loads_.push_out(state_, inverse_masses, gain)) follow();
   }
 
   /// Adds the work of the loads since the last call.

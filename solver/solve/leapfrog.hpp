@@ -76,6 +76,7 @@ class Leapfrog {
   void take(double step, LeapfrogClock::Coefficients coefficients, const Impose& impose) {
     move(step, coefficients);
     impose(body_);
+    body_.push_out(inverse_masses_, coefficients.gain);
     body_.evaluate_forces();
   }
 

@@ -24,10 +24,10 @@ inline double span(const NodalField& points) {
   return 2.0 * radius;
 }
 
-/// A load factor so small that no element inverts wherever the load acts. Driven nodes move by at most a
-/// hundredth of the smallest element's size h. Under the sum F of the forces, a cantilever as long as the
-/// mesh, l, and as thick as that element, with the smallest shear modulus as E, would rotate by F l^2 / (2 E
-/// I), I = h^4 / 12, at most about a hundredth; moments count as forces at the end of l.
+/// A load factor so small that no element inverts wherever the load acts. Driven nodes and obstacles move by
+/// at most a hundredth of the smallest element's size h. Under the sum F of the forces, a cantilever as long
+/// as the mesh, l, and as thick as that element, with the smallest shear modulus as E, would rotate by F l^2
+/// / (2 E I), I = h^4 / 12, at most about a hundredth; moments count as forces at the end of l.
 inline double first_load(const Model& model) {
   const Scene& scene = model.scene();
   double smallest = INFINITY;  // volume
@@ -44,7 +44,10 @@ inline double first_load(const Model& model) {
   double share = 1.0;  // of the case's load
   for (const LoadCurve& curve : scene.curves) share = std::max(share, std::abs(curve.share));
   const double turn = share * F * l * l * 6.0 / (mu * h * h * h * h);
-  return std::min({1.0, 0.01 * h / fastest_imposed(scene), 0.01 / turn});
+  double fastest = fastest_imposed(scene);
+  for (const ContactForce* contact : contacts_of(scene.forces))
+    fastest = std::max(fastest, share * contact->travel());
+  return std::min({1.0, 0.01 * h / fastest, 0.01 / turn});
 }
 
 /// The largest norm of an element's mean displacement gradient.
@@ -136,6 +139,7 @@ class LoadLevels {
     Body<Real>& body = search.body();
     body.move_to(last_.state.u);
     search.pressures() = last_.pressures;
+    if (search.may_touch()) body.impose(last_.load);
     if (last_.load == before_.load || search.may_touch()) {
       load_ = search.extend(load_, largest_first_gradient);
       return;

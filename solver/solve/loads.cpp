@@ -9,6 +9,7 @@ template <class Real>
 Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     : curves_(scene.curves),
       contacts_(contacts_of(scene.forces)),
+      moves_nodes_(std::ranges::any_of(contacts_, [](const auto* one) { return one->moves_nodes(); })),
       ranks_(layout.team.ranks),
       place_of_node_(scene.mesh.points.size(), -1),
       all_dead_(first_not_dead(scene.forces) == nullptr),
@@ -32,7 +33,7 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     remembered += contact->memory();
   }
   memory_ = memory_before_ = Rows<double>(remembered);
-  if (!contacts_.empty()) touching_ = u_;
+  if (!contacts_.empty()) touching_ = masses_ = u_;
   work_.resize(rows_.size());
 }
 
@@ -92,6 +93,26 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
 }
 
 template <class Real>
+bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses, double gain) {
+  if (!moves_nodes_) return false;
+  take(state.u, u_);
+  take(state.increment, increment_);
+  take(inverse_masses, masses_);
+  const Rows<double>& masses = masses_;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    contacts_[c]->push_out(factors_, {by_node(u_.data()), by_node(increment_.data()), by_node(masses.data()),
+                                      gain, memory_.data() + memory_of_[c]});
+  }
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      state.u[rows_[k]][i] = static_cast<Real>(u_[k][i]);
+      state.increment[rows_[k]][i] = static_cast<Real>(increment_[k][i]);
+    }
+  }
+  return true;
+}
+
+template <class Real>
 Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Real>& u) const {
   const std::vector<double> factors = factors_at(time, load_factor);
   std::vector<double> changes = factors;
@@ -102,9 +123,13 @@ Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Re
   for (const auto* load : loads_) {
     if (load->traits().drives) load->add_forces(changes, motion, by_node(sums.data()));
   }
-  for (const ContactForce* contact : contacts_) contact->add_forces(factors, motion, by_node(sums.data()));
-  for (std::size_t k = 0; k < touching_.size(); ++k) {
-    for (std::size_t i = 0; i < 3; ++i) sums[k][i] -= touching_[k][i];
+  Rows<double> before(touching_.size());
+  for (const ContactForce* contact : contacts_) {
+    contact->add_forces(factors, motion, by_node(sums.data()));
+    contact->add_forces(factors_, motion, by_node(before.data()));
+  }
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) sums[k][i] -= before[k][i];
   }
   Rows<Real> change(u.size());
   for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -151,7 +176,9 @@ template <class Real>
 double Loads<Real>::work() const {
   std::vector<double> all = work_;
   gather(all);
-  return std::accumulate(all.begin(), all.end(), work_of_obstacles_);
+  double sum = std::accumulate(all.begin(), all.end(), work_of_obstacles_);
+  for_each_touch([&](const Touch& touch) { sum += touch.worked; });
+  return sum;
 }
 
 template <class Real>

@@ -18,6 +18,10 @@ class Loads {
   /// Evaluates the loads of a state and subtracts them from its forces (N).
   void subtract(const State<Real>& state, Rows<Real>& force);
 
+  /// Lets obstacles move nodes within a step; see ContactForce::push_out. Returns whether there are such
+  /// obstacles.
+  bool push_out(State<Real>& state, const Rows<Real>& inverse_masses, double gain);
+
   /// The square of the norm of the loads (N^2) that were last evaluated.
   double square() const { return square_; }
 
@@ -81,6 +85,7 @@ class Loads {
   const std::vector<LoadCurve>& curves_;
   std::vector<const BodyForce*> loads_;  // all except obstacles
   std::vector<const ContactForce*> contacts_;
+  bool moves_nodes_;
   std::vector<std::size_t> memory_of_;  // first row of each
   std::vector<std::size_t> rows_;       // that carry loads
   std::vector<bool> owned_;             // by this rank, of these
@@ -91,6 +96,7 @@ class Loads {
   Rows<double> u_, increment_;           // m, of loaded rows; zero where all are dead
   Rows<double> forces_;                  // N, of loaded rows, except those of obstacles
   Rows<double> touching_;                // N, those; empty without any
+  Rows<double> masses_;                  // 1/kg, inverse, of loaded rows; empty without obstacles
   Rows<double> memory_, memory_before_;  // of contacts
   double work_of_obstacles_ = 0.0;       // J
   Rows<double> forces_before_, u_before_;

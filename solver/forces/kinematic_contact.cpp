@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cmath>
+
+#include "forces/obstacle_contact.hpp"
+
+namespace sandglass {
+
+namespace {
+
+constexpr std::string_view in_steps = "its method = 'kinematic' moves nodes within time steps";
+
+/// A row for the position (m) of the obstacle at the end of the last step, one for its motion in it, and for
+/// each node one for its motion in it relative to the obstacle.
+class KinematicContact final : public ObstacleContact {
+ public:
+  using ObstacleContact::ObstacleContact;
+
+  /// The force of a node is its mass times the change of velocity over the step. It acts between two steps,
+  /// so its work is the product with the mean of their motions; what it takes from the body at rest on the
+  /// obstacle is lost.
+  void push_out(Factors factors, const NodalPush& nodes) const override {
+    Memory memory(nodes.memory);
+    const Vector moved = displacement(factors);
+    Row<double>&position = memory.of_nodes[0], &last_of_obstacle = memory.of_nodes[1];
+    const Vector of_obstacle = difference(moved, {position[0], position[1], position[2]});
+    memory.pushes = {};
+    for_each_gap(moved, nodes.u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
+      const int node = nodes_[k].node;
+      Row<double>&last = memory.of_nodes[own + k], &increment = nodes.increment[node];
+      Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
+      if (position[3] == 0.0)  // the force of the first step acts for half of it
+        last = {{0.5 * motion[0], 0.5 * motion[1], 0.5 * motion[2], 0.0}};
+      if (gap.distance < 0.0) {
+        const Row<double>& w = nodes.inverse_masses[node];
+        const Vector change = correction(gap, motion, w);
+        motion = sum(motion, 1.0, change);
+        for (std::size_t i = 0; i < 3; ++i) {
+          if (!(w[i] > 0.0)) continue;
+          nodes.u[node][i] += change[i];
+          increment[i] += change[i];
+          const double force = change[i] / (w[i] * nodes.gain);
+          memory.pushes[i] += force;
+          memory.sums[0] -= 0.5 * force * (last[i] + motion[i]);
+          memory.sums[1] += 0.5 * force * (last_of_obstacle[i] + of_obstacle[i]);
+        }
+      }
+      last = {{motion[0], motion[1], motion[2], 0.0}};
+    });
+    position = {{moved[0], moved[1], moved[2], 1.0}};
+    last_of_obstacle = {{of_obstacle[0], of_obstacle[1], of_obstacle[2], 0.0}};
+  }
+
+  bool moves_nodes() const override { return true; }
+  void add_contact(Factors /*factors*/, NodalRows /*u*/, Row<double>* /*memory*/,
+                   AtNodes<Row<double>> /*forces*/) const override {}
+  void add_potential(Factors /*factors*/, NodalRows /*u*/, double& /*sum*/) const override {}
+  void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
+                 std::vector<LoadRates>& /*rates*/) const override {}
+  void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/,
+                             AtNodes<Row<float>> /*roots*/) const override {}
+  std::size_t memory() const override { return Memory::own + own + nodes_.size(); }
+  std::string_view no_rest() const override { return in_steps; }
+
+ private:
+  static constexpr std::size_t own = 2;
+
+  std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
+    return make_kinematic_contact(std::move(nodes), obstacle_, shape_, curve_, start_);
+  }
+
+  /// The change (m) of the motion of a node in a step that brings it to the surface, with friction; zero
+  /// where a component is constrained (w = 0).
+  Vector correction(const Gap& gap, const Vector& motion, const Row<double>& w) const {
+    Vector free = gap.normal;
+    for (std::size_t i = 0; i < 3; ++i) free[i] = w[i] > 0.0 ? free[i] : 0.0;
+    const double share = dot(free, free);
+    constexpr double least_share = 1e-6;
+    if (share < least_share) return {};
+    const double outwards = -gap.distance / share;
+    Vector change = sum({}, outwards, free);
+    if (obstacle_.friction == 0.0) return change;
+    const Vector along = sum(motion, -dot(motion, gap.normal), gap.normal);
+    const double size = std::sqrt(dot(along, along)), most = obstacle_.friction * outwards;
+    if (size > 0.0) change = sum(change, -std::min(1.0, most / size), along);
+    for (std::size_t i = 0; i < 3; ++i) change[i] = w[i] > 0.0 ? change[i] : 0.0;
+    return change;
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<ObstacleContact> make_kinematic_contact(std::vector<TouchingNode> nodes,
+                                                        const Obstacle& obstacle, const ObstacleShape& shape,
+                                                        std::size_t curve, const Vector& start) {
+  return std::make_shared<KinematicContact>(std::move(nodes), obstacle, shape, curve, start,
+                                            ForceTraits{Obstacle::name, false, true, in_steps});
+}
+
+}  // namespace sandglass

@@ -1,0 +1,126 @@
+#pragma once
+
+#include "forces/contact_force.hpp"
+#include "forces/obstacle.hpp"
+#include "forces/triangle_surface.hpp"
+
+namespace sandglass {
+
+/// A node that may touch an obstacle.
+struct TouchingNode {
+  int node;
+  Vector X;          ///< m
+  double stiffness;  ///< of a penalty, N/m
+};
+
+/// An obstacle where it is, and the nodes that may touch it: what all methods share. They keep three rows,
+/// and others for each node.
+class ObstacleContact : public ContactForce {
+ public:
+  ObstacleContact(std::vector<TouchingNode> nodes, const Obstacle& obstacle, ObstacleShape shape,
+                  std::size_t curve, const Vector& start, const ForceTraits& traits)
+      : ContactForce(numbers_of(nodes), traits),
+        nodes_(std::move(nodes)),
+        obstacle_(obstacle),
+        shape_(std::move(shape)),
+        curve_(curve),
+        start_(start) {}
+
+  const std::vector<TouchingNode>& touching() const { return nodes_; }
+
+  /// Of a node inside the obstacle, m; negative outside.
+  double depth_at_start(const TouchingNode& one) const {
+    return -facing_body(std::visit([&](const auto& s) { return s.at(difference(one.X, start_)); }, shape_))
+                .distance;
+  }
+
+  double travel() const final { return length(obstacle_.displacement); }
+
+  Touch touch(const Row<double>* memory) const final {
+    const Row<double>&pushes = memory[0], &moves = memory[1];
+    return {obstacle_.label,
+            {pushes[0], pushes[1], pushes[2]},
+            {moves[0], moves[1], moves[2]},
+            moves[3],
+            pushes[3],
+            memory[2][0],
+            memory[2][1]};
+  }
+
+  std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final {
+    std::vector<TouchingNode> inside;
+    for (TouchingNode one : nodes_) {
+      one.node = part.part_of[at(one.node)];
+      if (one.node >= 0) inside.push_back(one);
+    }
+    return inside.empty() ? nullptr : on(std::move(inside));
+  }
+
+ protected:
+  /// The rows that a contact keeps.
+  struct Memory {
+    Row<double>& pushes;  ///< force on the body, N; stored energy, J
+    Row<double>& moves;   ///< displacement of the obstacle, m; largest depth, m
+    Row<double>& sums;    ///< dissipated energy and work since the start, J
+    Row<double>* of_nodes;
+
+    static constexpr std::size_t own = 3;
+    explicit Memory(Row<double>* rows)
+        : pushes(rows[0]), moves(rows[1]), sums(rows[2]), of_nodes(rows + own) {}
+  };
+
+  /// The same contact of other nodes.
+  virtual std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const = 0;
+
+  Vector displacement(Factors factors) const { return sum({}, factors[curve_], obstacle_.displacement); }
+
+  /// Calls use(k, x, gap) for all nodes, with the position x (m) in the frame of the obstacle.
+  template <class Rows, class Use>
+  void for_each_gap(const Vector& moved, const Rows& u, const Use& use) const {
+    std::visit(
+        [&](const auto& shape) {
+          for (std::size_t k = 0; k < nodes_.size(); ++k) {
+            const Row<double>& of_node = u[nodes_[k].node];
+            Vector x = nodes_[k].X;
+            for (std::size_t i = 0; i < 3; ++i) x[i] += of_node[i] - moved[i];
+            use(k, x, facing_body(shape.at(x)));
+          }
+        },
+        shape_);
+  }
+
+  const std::vector<TouchingNode> nodes_;
+  const Obstacle obstacle_;
+  const ObstacleShape shape_;
+  const std::size_t curve_;
+  const Vector start_;  // its displacement at the start, m
+
+ private:
+  static std::vector<int> numbers_of(const std::vector<TouchingNode>& nodes) {
+    std::vector<int> numbers;
+    for (const TouchingNode& one : nodes) numbers.push_back(one.node);
+    return numbers;
+  }
+
+  Gap facing_body(const Gap& gap) const {
+    if (!obstacle_.inside) return gap;
+    return {-gap.distance, {-gap.normal[0], -gap.normal[1], -gap.normal[2]}};
+  }
+};
+
+/// By a penalty. In the frame of the obstacle, a node with the depth d is pushed along the normal by k d.
+/// With friction, a spring of the same stiffness k holds it to its anchor, where it first touched; it slips,
+/// and its anchor with it, so that the force along the surface is at most the coefficient of friction times k
+/// d. A node that sticks thus stays.
+std::shared_ptr<ObstacleContact> make_penalty_contact(std::vector<TouchingNode> nodes,
+                                                      const Obstacle& obstacle, const ObstacleShape& shape,
+                                                      std::size_t curve, const Vector& start);
+
+/// By moving nodes. The velocity that a node would have inside the obstacle is corrected so that it ends the
+/// step on the surface; it is never held there. Friction takes from its motion along the surface at most the
+/// coefficient of friction times this correction, and no more than there is.
+std::shared_ptr<ObstacleContact> make_kinematic_contact(std::vector<TouchingNode> nodes,
+                                                        const Obstacle& obstacle, const ObstacleShape& shape,
+                                                        std::size_t curve, const Vector& start);
+
+}  // namespace sandglass

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+
+#include "forces/obstacle_contact.hpp"
+
+namespace sandglass {
+
+namespace {
+
+constexpr std::string_view path_of_friction = "friction depends on the path";
+
+/// For each node, two rows if there is friction: its anchor (m) and whether it has one, and the spring's
+/// extension, m.
+class PenaltyContact final : public ObstacleContact {
+ public:
+  using ObstacleContact::ObstacleContact;
+
+  void add_contact(Factors factors, NodalRows u, Row<double>* rows,
+                   AtNodes<Row<double>> forces) const override {
+    Memory memory(rows);
+    const Vector moved = displacement(factors);
+    memory.pushes = {};
+    memory.moves = {{moved[0], moved[1], moved[2], 0.0}};
+    const bool sticks = obstacle_.friction > 0.0;
+    for_each_gap(moved, u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+      const auto& [node, X, stiffness] = nodes_[k];
+      Row<double>* of_node = memory.of_nodes + by_node * k;
+      if (gap.distance >= 0.0) {
+        if (sticks && of_node[0][3] != 0.0) let_go(stiffness, of_node, memory);
+        return;
+      }
+      const double depth = -gap.distance;
+      memory.pushes[3] += 0.5 * stiffness * depth * depth;
+      memory.moves[3] = std::max(memory.moves[3], depth);
+      Vector force = sum({}, stiffness * depth, gap.normal);
+      if (sticks) force = sum(force, -stiffness, hold(x, gap, stiffness, of_node, memory));
+      for (std::size_t i = 0; i < 3; ++i) {
+        forces[node][i] += force[i];
+        memory.pushes[i] += force[i];
+      }
+    });
+  }
+
+  /// Without friction.
+  void add_potential(Factors factors, NodalRows u, double& sum) const override {
+    for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
+      const double depth = std::max(-gap.distance, 0.0);
+      sum += 0.5 * nodes_[k].stiffness * depth * depth;
+    });
+  }
+
+  /// Curved obstacles have no larger stiffness in any direction, nor do springs along them.
+  void add_rates(Factors /*largest*/, const std::vector<double>& masses,
+                 std::vector<LoadRates>& rates) const override {
+    for (const auto& [node, X, stiffness] : nodes_) rates[at(node)].square += stiffness / masses[at(node)];
+  }
+
+  void set_contact_stiffness(Factors factors, NodalRows u, AtNodes<Row<float>> roots) const override {
+    for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
+      const auto& [node, X, stiffness] = nodes_[k];
+      if (gap.distance > 0.0) return;
+      Row<float>& row = roots[node];
+      const auto there = static_cast<double>(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+      if (there >= stiffness) return;
+      for (std::size_t i = 0; i < 3; ++i) row[i] = static_cast<float>(std::sqrt(stiffness) * gap.normal[i]);
+    });
+  }
+
+  std::size_t memory() const override {
+    return Memory::own + (obstacle_.friction > 0.0 ? by_node * nodes_.size() : 0);
+  }
+
+  std::string_view no_rest() const override { return traits().no_potential; }
+
+  /// Holds nodes that touch it at the start: a load may pull them away, but then no equilibrium is found.
+  void add_holds(std::vector<Hold>& holds) const override {
+    const Rows<double> undeformed(nodes_.size());
+    std::vector<int> places;
+    for (const TouchingNode& one : nodes_) places.resize(std::max(places.size(), at(one.node) + 1), 0);
+    for_each_gap(start_, NodalRows(undeformed.data(), places),
+                 [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
+                   if (gap.distance <= 0.0) holds.push_back({{{nodes_[k].node, 1.0}}, gap.normal});
+                 });
+  }
+
+ private:
+  static constexpr std::size_t by_node = 2;
+
+  std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
+    return make_penalty_contact(std::move(nodes), obstacle_, shape_, curve_, start_);
+  }
+
+  /// The extension (m) along the surface of the spring that holds a node. Work is the mean of two forces
+  /// times the slip, as in the time loop.
+  Vector hold(const Vector& x, const Gap& gap, double stiffness, Row<double>* of_node, Memory& memory) const {
+    Row<double>&anchor = of_node[0], &stretch = of_node[1];
+    if (anchor[3] == 0.0) {
+      anchor = {{x[0], x[1], x[2], 1.0}};
+      stretch = {};
+    }
+    const Vector from = difference(x, {anchor[0], anchor[1], anchor[2]});
+    Vector along = sum(from, -dot(from, gap.normal), gap.normal);
+    const double size = std::sqrt(dot(along, along)), most = obstacle_.friction * -gap.distance;
+    if (size > most) {
+      const Vector held = sum({}, most / size, along), slip = difference(along, held);
+      for (std::size_t i = 0; i < 3; ++i)
+        memory.sums[0] += 0.5 * stiffness * (stretch[i] + held[i]) * slip[i];
+      along = held;
+    }
+    const Vector now = difference(
+        x, along);  // at the depth of the node, so that edges of obstacles do not stretch the spring
+    anchor = {{now[0], now[1], now[2], 1.0}};
+    stretch = {{along[0], along[1], along[2], 0.0}};
+    memory.pushes[3] += 0.5 * stiffness * dot(along, along);
+    return along;
+  }
+
+  static void let_go(double stiffness, Row<double>* of_node, Memory& memory) {
+    const Row<double>& stretch = of_node[1];
+    for (std::size_t i = 0; i < 3; ++i) memory.sums[0] += 0.5 * stiffness * stretch[i] * stretch[i];
+    of_node[0] = of_node[1] = {};
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<ObstacleContact> make_penalty_contact(std::vector<TouchingNode> nodes,
+                                                      const Obstacle& obstacle, const ObstacleShape& shape,
+                                                      std::size_t curve, const Vector& start) {
+  const bool rubs = obstacle.friction > 0.0;
+  return std::make_shared<PenaltyContact>(
+      std::move(nodes), obstacle, shape, curve, start,
+      ForceTraits{Obstacle::name, false, rubs, rubs ? path_of_friction : ""});
+}
+
+}  // namespace sandglass

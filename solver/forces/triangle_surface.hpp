@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <variant>
+
+#include "forces/obstacle_shape.hpp"
+
+namespace sandglass {
+
+/// Corners of triangles, counterclockwise seen from outside.
+using Triangle = std::array<int, 3>;
+
+/// A closed surface of triangles, with a tree of boxes around them. Distances are exact; inside and outside
+/// follow from the normal of the closest face, edge or corner, angle-weighted (Baerentzen and Aanaes 2005).
+class TriangleSurface {
+ public:
+  /// Either orientation will do, if all triangles have the same. Throws InputError that names `file`, the
+  /// rule and the place if a triangle has no area or the surface is open, branches, or has no volume.
+  TriangleSurface(NodalField points, std::vector<Triangle> triangles, const std::string& file);
+
+  /// See ObstacleShape. Allocates nothing.
+  Gap at(const Vector& x) const;
+
+ private:
+  struct Node {
+    Vector low, high;  // m
+    int first, count;  // of the triangles; count 0: of the two nodes below
+  };
+  struct Closest {
+    double square;  // of the distance, m^2
+    Vector point;
+    Vector normal;  // of the feature
+  };
+
+  const Vector& point(int n) const { return points_[static_cast<std::size_t>(n)]; }
+  int build(int first, int count);
+  void orient(const std::string& file);
+  void set_normals(const std::string& file);
+  void compare(const Vector& x, std::size_t triangle, Closest& closest) const;
+
+  NodalField points_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::array<Vector, 7>> normals_;  // of each face, its edges (from corners 0, 1, 2) and corners
+  std::vector<Node> nodes_;
+};
+
+/// Reads a surface, in m: .stl, text or binary, or .obj. Throws InputError for another file, or a damaged
+/// one.
+TriangleSurface read_triangle_surface(const std::filesystem::path& path);
+
+/// A surface whose origin is at a point (m).
+struct SurfaceShape {
+  std::shared_ptr<const TriangleSurface> surface;
+  Vector origin;
+
+  Gap at(const Vector& x) const { return surface->at(difference(x, origin)); }
+};
+
+using ObstacleShape = std::variant<PlaneShape, RoundShape, BoxShape, EllipsoidShape, SurfaceShape>;
+
+}  // namespace sandglass
