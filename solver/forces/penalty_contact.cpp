@@ -107,8 +107,8 @@ class PenaltyContact final : public ObstacleContact {
         memory.sums[0] += 0.5 * stiffness * (stretch[i] + held[i]) * slip[i];
       along = held;
     }
-    const Vector now = difference(
-        x, along);  // at the depth of the node, so that edges of obstacles do not stretch the spring
+    // At the depth of the node: where a normal turns, at an edge, the spring is not stretched.
+    const Vector now = difference(x, along);
     anchor = {{now[0], now[1], now[2], 1.0}};
     stretch = {{along[0], along[1], along[2], 0.0}};
     memory.pushes[3] += 0.5 * stiffness * dot(along, along);

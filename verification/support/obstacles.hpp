@@ -1,0 +1,42 @@
+#pragma once
+
+#include "support/scenes.hpp"
+
+/// Bodies and obstacles of tests.
+namespace sandglass::verification {
+
+/// Nodes where a coordinate has a value.
+inline std::vector<int> plane(const NodalField& points, std::size_t axis, double at) {
+  return nodes_where(points, [=](const Vector& X) { return std::abs(X[axis] - at) < 1e-9; });
+}
+
+/// A plane through the height z that faces the body below it, and moves.
+inline Obstacle ceiling(double z, double down) {
+  Obstacle made{.label = "plate", .set = "top", .point = {0.0, 0.0, z}, .normal = {0.0, 0.0, -2.0}};
+  made.displacement = {0.0, 0.0, -down};
+  return made;
+}
+
+/// A plane through z = 0 that faces the body above it.
+inline Obstacle ground() {
+  return {.label = "ground", .set = "foot", .normal = {0.0, 0.0, 1.0}};
+}
+
+/// A column on a fixed foot.
+struct Column {
+  Mesh mesh;
+  NodeSets sets;
+  Case description;
+
+  Column(const std::array<double, 3>& size, const std::array<int, 3>& elements, const AnyLaw& law)
+      : mesh(box(size, elements)),
+        sets{{"foot", plane(mesh.points, 2, 0.0)},
+             {"side", plane(mesh.points, 0, 0.0)},
+             {"back", plane(mesh.points, 1, 0.0)},
+             {"top", plane(mesh.points, 2, size[2])}},
+        description(plain_case(law)) {}
+
+  Scene scene() const { return make_scene(description, mesh, sets); }
+};
+
+}  // namespace sandglass::verification
