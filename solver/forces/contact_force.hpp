@@ -41,6 +41,9 @@ class ContactForce : public BodyForce {
   /// Moves nodes back onto it.
   virtual void push_out(Factors /*factors*/, const NodalPush& /*nodes*/) const {}
 
+  /// How far nodes may be inside of it and still be pushed back to where they came from, m.
+  virtual double half_thickness() const = 0;
+
   /// How far it moves at the factor one, m.
   virtual double travel() const = 0;
 

@@ -34,6 +34,10 @@ class ObstacleContact : public ContactForce {
                 .distance;
   }
 
+  double half_thickness() const final {
+    if (obstacle_.inside) return INFINITY;
+    return std::visit([](const auto& shape) { return shape.half_thickness(); }, shape_);
+  }
   double travel() const final { return length(obstacle_.displacement); }
 
   Touch touch(const Row<double>* memory) const final {

@@ -5,8 +5,8 @@
 
 #include "mesh/mesh.hpp"
 
-/// The geometry of obstacles: for a point x (m), the distance from the surface, negative inside, and its
-/// gradient.
+/// The geometry of obstacles, each with its half thickness (m), and for a point x (m), the distance from the
+/// surface, negative inside, and its gradient.
 namespace sandglass {
 
 /// The signed distance (m) of a point from a surface, and the direction in which it grows, of length one.
@@ -37,6 +37,7 @@ inline Vector direction_of(const Vector& v, double length) {
 struct PlaneShape {
   Vector point, normal;  ///< normal: of length one, to the outside
 
+  double half_thickness() const { return INFINITY; }
   Gap at(const Vector& x) const { return {dot(normal, difference(x, point)), normal}; }
 };
 
@@ -46,6 +47,7 @@ struct RoundShape {
   double low, high;    ///< of t
   double radius;       ///< m
 
+  double half_thickness() const { return radius; }
   Gap at(const Vector& x) const {
     const Vector from = difference(x, start);
     const double t = std::clamp(dot(from, axis) / std::max(dot(axis, axis), smallest), low, high);
@@ -62,6 +64,7 @@ struct RoundShape {
 struct BoxShape {
   Vector centre, half_sizes;
 
+  double half_thickness() const { return *std::ranges::min_element(half_sizes); }
   Gap at(const Vector& x) const {
     const Vector from = difference(x, centre);
     Vector beyond{}, outside{};
@@ -81,6 +84,8 @@ struct BoxShape {
 /// An ellipsoid with its axes along the coordinate axes.
 struct EllipsoidShape {
   Vector centre, semi_axes;
+
+  double half_thickness() const { return *std::ranges::min_element(semi_axes); }
 
   /// The nearest point of the surface is y = a^2 x / (a^2 + t), by components, for the t (m^2) that puts it
   /// on the surface; the distance is t |y / a^2|. Newton's method for t ascends from a lower bound, as the

@@ -258,6 +258,10 @@ void TriangleSurface::compare(const Vector& x, std::size_t triangle, Closest& cl
   if (square < closest.square) closest = {square, point, normals_[triangle][foot.feature]};
 }
 
+double TriangleSurface::half_thickness() const {
+  return 0.5 * std::ranges::min(difference(nodes_.front().high, nodes_.front().low));
+}
+
 Gap TriangleSurface::at(const Vector& x) const {
   Closest closest{INFINITY, {}, {}};
   constexpr std::size_t deepest = 64;  // nodes halve the triangles

@@ -19,6 +19,9 @@ class TriangleSurface {
   /// rule and the place if a triangle has no area or the surface is open, branches, or has no volume.
   TriangleSurface(NodalField points, std::vector<Triangle> triangles, const std::string& file);
 
+  /// Half the shortest edge of the box around it, m.
+  double half_thickness() const;
+
   /// See ObstacleShape. Allocates nothing.
   Gap at(const Vector& x) const;
 
@@ -54,6 +57,7 @@ struct SurfaceShape {
   std::shared_ptr<const TriangleSurface> surface;
   Vector origin;
 
+  double half_thickness() const { return surface->half_thickness(); }
   Gap at(const Vector& x) const { return surface->at(difference(x, origin)); }
 };
 

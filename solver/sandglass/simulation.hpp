@@ -111,8 +111,8 @@ class Simulation {
   std::span<const int> row_of_node() const;
 
   /// The force (N) that holds or drives a set of nodes: the sum over its driven components, without the
-  /// inertia of the nodes themselves. Or the force of the obstacle of this name on the body. Throws InputError
-  /// like `move`.
+  /// inertia of the nodes themselves. Or the force of the obstacle of this name on the body. Throws
+  /// InputError like `move`.
   std::array<double, 3> reaction(const std::string& set) const;
 
   // The mesh, in its own numbering.

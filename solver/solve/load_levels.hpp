@@ -269,12 +269,17 @@ class LoadLevels {
     std::vector<Real> pressures;
   };
 
-  /// Rotations advance by at most an eighth of a turn per level: a whole turn would look like none.
+  /// Rotations advance by at most an eighth of a turn per level: a whole turn would look like none. Obstacles
+  /// advance by at most half of half their thickness: nodes beyond their middle would leave on the other
+  /// side.
   static double longest_increment(const Scene& scene) {
     double largest = 0.0;
     for (const double angle : scene.angles) largest = std::max(largest, std::abs(angle));
     constexpr double eighth = std::numbers::pi / 4.0;
-    return largest > eighth ? eighth / largest : 1.0;
+    double longest = largest > eighth ? eighth / largest : 1.0;
+    for (const ContactForce* contact : contacts_of(scene.forces))
+      longest = std::min(longest, 0.5 * contact->half_thickness() / contact->travel());
+    return longest;
   }
 
   /// The increment of equal load levels: from the user's number, or such that no element's displacement
