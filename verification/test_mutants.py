@@ -12,6 +12,7 @@ import outcomes
 import patches
 import pytest
 import run
+import worker
 from command_line import ROOT, ran
 from common.errors import InputError
 from plant import Mistake, mistakes_of, plant
@@ -138,21 +139,26 @@ def test_mistakes_of_a_line(line, kind, mistakes):
     assert [text.strip() for one, text in mistakes_of(line) if one == kind] == mistakes
 
 
-@pytest.fixture
-def tree(tmp_path):
-    """A repository whose last commit adds three lines."""
+def commit(folder, files):
+    """Commits files, {path: text}, to the repository of a folder."""
 
     def git(*words):
         own = ["-c", "user.name=n", "-c", "user.email=e", "-c", "commit.gpgsign=false"]
-        subprocess.run(["git", "-C", tmp_path, *own, *words], check=True, capture_output=True)
+        subprocess.run(["git", "-C", folder, *own, *words], check=True, capture_output=True)
 
-    (tmp_path / "solver").mkdir()
+    for name, text in files.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
     git("init", "-q")
+    git("add", "-A")
+    git("commit", "-qm", "c")
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """A repository whose last commit adds three lines."""
     for text in ("int old = 1 + 2;\n", "int old = 1 + 2;\n  a = b;\n  c = d * a;\n// 3 + 4\n"):
-        (tmp_path / "solver/a.cpp").write_text(text)
-        (tmp_path / "other.cpp").write_text(text)
-        git("add", "-A")
-        git("commit", "-qm", "c")
+        commit(tmp_path, {"solver/a.cpp": text, "other.cpp": text})
     return tmp_path
 
 
@@ -186,3 +192,51 @@ def test_random_mistakes_are_reported(tree, call, monkeypatch, capsys):
     monkeypatch.setattr(run, "programs_of", lambda _: [SimpleNamespace(name="load_test")])
     with pytest.raises(InputError, match="--tests lod_test: allowed are load_test"):
         call(None, **given | {"tests": ["lod_test"]})
+
+
+SMALL_PROJECT = {
+    "CMakePresets.json": """{"version": 6, "configurePresets": [
+        {"name": "developer", "generator": "Ninja"}, {"name": "quick", "generator": "Ninja"}]}""",
+    "CMakeLists.txt": """cmake_minimum_required(VERSION 3.25)
+project(small LANGUAGES CXX)
+function(add_tests library headers name)
+  add_executable(${name} ${name}.cpp)
+  target_link_libraries(${name} ${library})
+endfunction()
+add_subdirectory(solver)
+add_subdirectory(verification)
+""",
+    "solver/CMakeLists.txt": "add_library(a a.cpp)\n",
+    "solver/a.hpp": "inline int two() { return 2; }\n",
+    "solver/a.cpp": '#include "a.hpp"\nint four() { return 2 * two(); }\n',
+    "verification/CMakeLists.txt": "add_tests(a a\n  small_test)\n",
+    "verification/small_test.cpp": r"""#include <cstdio>
+int four();
+int main() {
+  if (four() == 4) return 0;
+  std::puts("[  FAILED  ] Small.four (0 ms)");
+  return 1;
+}
+""",
+}
+
+
+@pytest.mark.parametrize("file", ["solver/a.hpp", "solver/a.cpp"])
+def test_mutants_are_built_and_leave_nothing_behind(tmp_path, monkeypatch, file):
+    """Each outcome twice: what a mutant was built to would be in the next one."""
+    commit(tmp_path, SMALL_PROJECT)
+    monkeypatch.setattr(worker, "ROOT", tmp_path)
+    text = SMALL_PROJECT[file]
+    mistakes = {"killed": ("return ", "return 1 + "), "broken": ("int", "in"), None: ("{ ", "{  ")}
+    for_sources = file.endswith(".cpp")
+    with worker.Worker("HEAD", threading.Event(), 1, ["small_test"], for_sources) as copy:
+        for kind, (right, wrong) in [*mistakes.items(), *mistakes.items()]:
+            line = text.splitlines()[-1]
+            mistake = Mistake(
+                file, text.count("\n"), "word", (line,), (line.replace(right, wrong, 1),)
+            )
+            path = tmp_path / "a.patch"
+            path.write_text(mistake.patch(text))
+            failure = copy.first_failure(patches.read_patch(path), 60.0)
+            assert (failure.kind if failure else None) == kind
+            assert kind != "killed" or failure.by == "Small.four"

@@ -228,26 +228,15 @@ class Worker:
     @contextlib.contextmanager
     def _applied(self, patch):
         """The tree with a patch; yields the time after which files belong to the mutant."""
-        before = {self.tree / name: (self.tree / name).stat() for name in patch.files}
-        content = {path: path.read_bytes() for path in before}
+        content = {self.tree / name: (self.tree / name).read_bytes() for name in patch.files}
         time.sleep(0.05)  # file systems have coarse clocks
         since = time.time() - 0.02
         try:
             self._run(["git", "apply", patch.path])
             yield since
         finally:
-            for path, status in before.items():
-                path.write_bytes(content[path])
-                os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
-            self._remove_built(since)
-
-    def _remove_built(self, since):
-        """Removes the files built from a mutant; all others are up to date and stay."""
-        for path in self.build.rglob("*"):
-            is_program = not path.suffix and os.access(path, os.X_OK)
-            is_built = is_program or path.suffix in (".o", ".a", ".so")
-            if is_built and path.is_file() and path.stat().st_mtime >= since:
-                path.unlink()
+            for path, before in content.items():
+                path.write_bytes(before)  # newer than what was built from the mutant, which is built again
 
     def _run(self, command, limit=None, check=True):
         """Runs a command in the tree: (exit status, text). Raises OutOfTime after `limit` s."""
