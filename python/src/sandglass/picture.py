@@ -61,7 +61,7 @@ def draw(points, cells, faces, frame, field, scale, ax):
         getattr(ax, f"set_{name}lim")(center - max(size, 0.1 * half), center + max(size, 0.1 * half))
         getattr(ax, f"set_{name}label")(f"{name} (m)")
         getattr(ax, f"{name}axis").set_major_locator(plt.MaxNLocator(3))
-    ax.set_box_aspect(np.maximum(high - low, 0.2 * half))
+    ax.set_box_aspect(np.maximum(high - low, 0.2 * half), zoom=0.75)
     name = "von Mises stress" if field == "stress" else field.replace("_", " ")
     unit = f" ({_UNITS[field]})" if field in _UNITS else ""
     figure = ax.get_figure()
