@@ -53,7 +53,8 @@ py::tuple tuple_of(const MeshWithSets& found) {
                         sets_of(found.sets), sets_of(found.element_sets));
 }
 
-/// Keeps frames and history, reports progress to Python, and ends the run on Ctrl-C. The GIL is free meanwhile.
+/// Keeps frames and history, reports progress to Python, and ends the run on Ctrl-C. The GIL is free
+/// meanwhile.
 class Recorder final : public Observer {
  public:
   explicit Recorder(const py::object& progress) : progress_(progress) {}
@@ -91,7 +92,7 @@ class Recorder final : public Observer {
 };
 
 /// A case that was solved: immutable.
-class Answer {
+class Answer : public NeverUnmade {
  public:
   /// Throws InputError and ComputationError as `sandglass run` does.
   Answer(const std::string& case_text, MeshArrays mesh, int threads, const py::object& progress)
@@ -112,11 +113,18 @@ class Answer {
     rows_ = std::move(recorder.rows);
   }
 
-  const Scene& scene() const { return scene_; }
-  std::size_t frames() const { return frames_.size(); }
+  const Scene& scene() const {
+    require_made("Answer");
+    return scene_;
+  }
+  std::size_t frames() const {
+    require_made("Answer");
+    return frames_.size();
+  }
 
   /// The arrays of a frame, in the numbering of the mesh.
   py::dict frame(std::size_t number) const {
+    require_made("Answer");
     const Frame& frame = frames_.at(number);
     const auto elements = count(frame.jacobians);
     py::dict arrays;
@@ -134,6 +142,7 @@ class Answer {
   }
 
   py::dict history() const {
+    require_made("Answer");
     py::dict columns;
     const auto add = [&](const char* name, double HistoryRow::*member) {
       std::vector<double> column;
@@ -150,10 +159,13 @@ class Answer {
     return columns;
   }
 
-  py::dict summary() const { return summary_; }
+  py::dict summary() const {
+    require_made("Answer");
+    return summary_;
+  }
 
   py::tuple estimate() const {
-    if (!scene_.settings.quasi_static) throw InputError("estimate: errors are estimated for static answers");
+    if (!scene().settings.quasi_static) throw InputError("estimate: errors are estimated for static answers");
     ErrorEstimate found;
     {
       const py::gil_scoped_release others;
@@ -163,6 +175,7 @@ class Answer {
   }
 
   void write(const std::filesystem::path& path, const std::string& writer) const {
+    require_made("Answer");
     ResultWriter result(model_, path, {{"written by", writer}, {"method", model_.choice().method}});
     for (const Frame& frame : frames_) result.frame(frame);
     for (const HistoryRow& row : rows_) result.history(row);
@@ -239,9 +252,8 @@ void add_answers(py::module_& m) {
       },
       "The declared tables of a case file.");
   m.def(
-      "mesh_of_keys",
-      [](const std::string& keys) { return tuple_of(mesh_of_keys(keys)); },
-      "keys"_a, "Points, cells, node sets and element sets of a table [mesh].");
+      "mesh_of_keys", [](const std::string& keys) { return tuple_of(mesh_of_keys(keys)); }, "keys"_a,
+      "Points, cells, node sets and element sets of a table [mesh].");
 
   m.def(
       "checked_mesh",
@@ -256,7 +268,8 @@ void add_answers(py::module_& m) {
       .def("frame", &Answer::frame, "number"_a, "The arrays of a frame.")
       .def("history", &Answer::history, "The columns of the history.")
       .def("summary", &Answer::summary, "How it was found.")
-      .def("estimate", &Answer::estimate, "The largest and the rms distance from the mean-dilatation answer, m.")
+      .def("estimate", &Answer::estimate,
+           "The largest and the rms distance from the mean-dilatation answer, m.")
       .def("write", &Answer::write, "path"_a, "writer"_a, "Writes a result file.")
       .def(
           "mesh",

@@ -17,7 +17,7 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 /// A simulation in either precision, used by one thread at a time.
-class AnySimulation {
+class AnySimulation : public NeverUnmade {
  public:
   /// `arguments` are those of Simulation; `precision` is "double" or "float".
   template <class... Arguments>
@@ -27,6 +27,7 @@ class AnySimulation {
   /// Returns `use(simulation)`. Throws if another thread is using the simulation.
   template <class Use>
   auto with(const Use& use) {
+    require_made("Simulation");
     if (busy_.test_and_set()) throw std::runtime_error("the simulation is busy in another thread");
     const Release release{busy_};
     return std::visit(use, simulation_);

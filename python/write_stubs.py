@@ -1,4 +1,4 @@
-"""Writes tables.pyi of the built package: python3 write_stubs.py FOLDER, that of the compiled module."""
+"""Writes tables.pyi of the built package: python3 write_stubs.py FOLDER-OF-THE-MODULE."""
 
 import pathlib
 import runpy

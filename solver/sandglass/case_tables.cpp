@@ -72,7 +72,8 @@ CaseKey number_key(const char* name, int count, const char* unit, bool required,
           .meaning = meaning};
 }
 
-CaseKey word_key(const char* name, bool required, const std::vector<std::string>& words, const char* meaning) {
+CaseKey word_key(const char* name, bool required, const std::vector<std::string>& words,
+                 const char* meaning) {
   return {.name = name,
           .type = "word",
           .unit = "-",
@@ -112,13 +113,15 @@ CaseTable displacement_table() {
 }
 
 CaseTable rotation_table() {
-  CaseKey axis = word_key("axis", true, {"x", "y", "z"}, "axis of the rotation, or its direction as a vector");
-  return {.table = "rotation",
-          .several = true,
-          .summary = "a rigid rotation imposed on a node set, by the right-hand rule",
-          .keys = {text_key("set", true, "a node set"), axis, number_key("angle", 1, "deg", true, "its angle"),
-                   number_key("center", 3, "m", false, "a point of the axis; default: the mean of the nodes"),
-                   number_key("displacement", 3, "m", false, "added to the rotation; default: none")}};
+  CaseKey axis =
+      word_key("axis", true, {"x", "y", "z"}, "axis of the rotation, or its direction as a vector");
+  return {
+      .table = "rotation",
+      .several = true,
+      .summary = "a rigid rotation imposed on a node set, by the right-hand rule",
+      .keys = {text_key("set", true, "a node set"), axis, number_key("angle", 1, "deg", true, "its angle"),
+               number_key("center", 3, "m", false, "a point of the axis; default: the mean of the nodes"),
+               number_key("displacement", 3, "m", false, "added to the rotation; default: none")}};
 }
 
 CaseTable method_table() {
@@ -130,8 +133,7 @@ CaseTable method_table() {
           .summary = "how the answer is computed",
           .keys = {word_key("name", true, method_names(), "a method"), kappa,
                    word_key("kappa_modulus", false, {"p-wave", "shear"}, "the modulus that kappa multiplies"),
-                   accuracy,
-                   word_key("precision", false, {"double", "float"}, "the numbers to compute in")}};
+                   accuracy, word_key("precision", false, {"double", "float"}, "the numbers to compute in")}};
 }
 
 }  // namespace

@@ -29,12 +29,12 @@ struct CaseTable {
   std::vector<CaseKey> keys;
 };
 
-/// The tables of a case file, for programs that write cases: mesh generators, laws, imposed motions, forces and
-/// settings. Laws, generators and kinds of forces come from their lists.
+/// The tables of a case file, for programs that write cases: mesh generators, laws, imposed motions, forces
+/// and settings. Laws, generators and kinds of forces come from their lists.
 std::vector<CaseTable> case_tables();
 
-/// The mesh of a table [mesh], given as the lines of its keys, and its sets. Paths are relative to the current
-/// folder. Throws InputError.
+/// The mesh of a table [mesh], given as the lines of its keys, and its sets. Paths are relative to the
+/// current folder. Throws InputError.
 MeshWithSets mesh_of_keys(const std::string& keys);
 
 }  // namespace sandglass

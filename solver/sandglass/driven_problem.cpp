@@ -68,8 +68,8 @@ void sort_sets(std::map<std::string, std::vector<int>>& sets, const char* set, c
   for (auto& [name, members] : sets) {
     for (const int number : members) {
       if (number >= 0 && at(number) < count) continue;
-      throw InputError(fmt::format("mesh: {} '{}' names {} {}; it must be in [0, {})", set, name, member,
-                                   number, count));
+      throw InputError(
+          fmt::format("mesh: {} '{}' names {} {}; it must be in [0, {})", set, name, member, number, count));
     }
     std::sort(members.begin(), members.end());
     members.erase(std::unique(members.begin(), members.end()), members.end());
@@ -102,7 +102,8 @@ MeshWithSets checked(MeshArrays arrays) {
         "mesh: node {} of {} belongs to no cell; each node must belong to one, and there must be nodes",
         std::distance(met.begin(), alone), met.size()));
   }
-  return {{std::move(arrays.points), std::move(arrays.cells)}, std::move(arrays.sets),
+  return {{std::move(arrays.points), std::move(arrays.cells)},
+          std::move(arrays.sets),
           std::move(arrays.element_sets)};
 }
 

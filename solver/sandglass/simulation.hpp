@@ -17,9 +17,9 @@ namespace sandglass {
 
 /// A mesh in memory, with named sets of nodes and of elements.
 struct MeshArrays {
-  std::vector<std::array<double, 3>> points = {};     ///< m
-  std::vector<std::array<int, 8>> cells = {};         ///< hexahedra in VTK order; nodes count from 0
-  std::map<std::string, std::vector<int>> sets = {};  ///< name -> nodes
+  std::vector<std::array<double, 3>> points = {};             ///< m
+  std::vector<std::array<int, 8>> cells = {};                 ///< hexahedra in VTK order; nodes count from 0
+  std::map<std::string, std::vector<int>> sets = {};          ///< name -> nodes
   std::map<std::string, std::vector<int>> element_sets = {};  ///< name -> elements
 };
 

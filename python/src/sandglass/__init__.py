@@ -1,8 +1,8 @@
 """Sandglass, an explicit solver for soft solids: arrays in, arrays out.
 
-`Body` takes a mesh, a material and loads; `Body.solve` returns a `Solution`. `Simulation` steps a body by hand.
-Laws, generators, loads and settings are classes with the parameters of the case file: `help(sandglass.NeoHookean)`
-lists them, and `sandglass.tables.CLASSES` has them all.
+`Body` takes a mesh, a material and loads; `Body.solve` returns a `Solution`. `Simulation` steps a
+body by hand. Laws, generators, loads and settings are classes with the parameters of the case
+file: `help(sandglass.NeoHookean)` lists them, and `sandglass.tables.CLASSES` has them all.
 """
 
 import _sandglass
@@ -13,6 +13,10 @@ from sandglass.mesh import Mesh
 from sandglass.solution import Solution
 from sandglass.tables import *  # noqa: F401, F403
 
+InputError.__doc__ = "Wrong arguments: the message names argument, value and rule."
+ComputationError.__doc__ = (
+    "A failed computation: the message names the time, the elements or the load."
+)
 for _each in (ComputationError, InputError, Simulation):
     _each.__module__ = "sandglass"
 

@@ -16,15 +16,16 @@ _OTHER = ("case", "mesh", "material", "materials", "sets", "element_sets")
 class Body:
     """A body in a case: what `sandglass run` computes, made in Python.
 
-    `mesh`: an `sg.Mesh`, a generator such as `sg.Box`, the path of a mesh file, or an object of meshio or VTK.
-    `material`: a law such as `sg.NeoHookean`, or several that name their `elements`. `tables`: loads, imposed
-    motions and settings, such as `sg.Displacement` and `sg.Pressure`; with `sg.Dynamics` the answer is a motion,
-    else static equilibrium. `sets`: a dict from names to arrays of nodes, or to rules such as `{"z": [0, 0]}`;
-    `element_sets` likewise for elements. All attributes may be changed; the mesh itself may not.
+    `mesh`: an `sg.Mesh`, a generator such as `sg.Box`, the path of a mesh file, or an object of
+    meshio or VTK. `material`: a law such as `sg.NeoHookean`, or several that name their
+    `elements`. `tables`: loads, imposed motions and settings, such as `sg.Displacement` and
+    `sg.Pressure`; with `sg.Dynamics` the answer is a motion, else static equilibrium. `sets`: a
+    dict from names to arrays of nodes, or to rules such as `{"z": [0, 0]}`; `element_sets`
+    likewise for elements. All attributes may be changed; the mesh itself may not.
 
-    `repr(body)` is its case file: `sg.Body.read` reads it, and so does `sandglass run`. Raises TypeError for
-    arguments of another type, and InputError, with the words of the solver, for wrong meshes; values of other
-    tables are checked by `solve` and `simulation`.
+    `repr(body)` is its case file: `sg.Body.read` reads it, and so does `sandglass run`. Raises
+    TypeError for arguments of another type, and InputError, with the words of the solver, for
+    wrong meshes; values of other tables are checked by `solve` and `simulation`.
     """
 
     def __init__(
@@ -64,7 +65,7 @@ class Body:
 
     @classmethod
     def of_toml(cls, text, mesh=None):
-        """The body of the text of a case file; `mesh` stands for its table [mesh]. Raises InputError."""
+        """The body of the text of a case; `mesh` stands for its table [mesh]. Raises InputError."""
         try:
             case = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
@@ -97,7 +98,9 @@ class Body:
                     body.tables.append(class_for(name)(**each))
             static = not any(t._declared["table"] == "dynamics" for t in body.tables)
             if head["answer"] != ("quasi-static" if static else "dynamic"):
-                raise _sandglass.InputError("case.answer is dynamic with [dynamics], else quasi-static")
+                raise _sandglass.InputError(
+                    "case.answer is dynamic with [dynamics], else quasi-static"
+                )
         except KeyError as error:
             raise _sandglass.InputError(f"{file}: {error.args[0]} is missing") from None
         except _sandglass.InputError as error:
@@ -109,10 +112,10 @@ class Body:
     def solve(self, *, threads=1, progress=None, **method):
         """The answer of the case: its static equilibrium, or its motion.
 
-        `threads` do not change the answer. `progress` is called now and then with the completed share of the
-        work. Other keywords replace those of the body's `sg.Method`: `name`, `kappa`, `precision`, `accuracy`,
-        `kappa_modulus`. Other threads run meanwhile, and Ctrl-C ends it. Returns an `sg.Solution`. Raises
-        InputError, and ComputationError if the computation fails.
+        `threads` do not change the answer. `progress` is called now and then with the completed
+        share of the work. Other keywords replace those of the body's `sg.Method`: `name`, `kappa`,
+        `precision`, `accuracy`, `kappa_modulus`. Other threads run meanwhile, and Ctrl-C ends it.
+        Returns an `sg.Solution`. Raises InputError, and ComputationError if the computation fails.
         """
         if progress is not None and not callable(progress):
             raise TypeError(f"progress must be callable, but is a {type(progress).__name__}")
@@ -121,7 +124,7 @@ class Body:
         return Solution(answer, self.name)
 
     def simulation(self, **settings):
-        """An `sg.Simulation` of the body, to be moved and advanced; `settings` are those of `sg.Simulation`."""
+        """An `sg.Simulation` of the body, to move and advance; `settings` are its keywords."""
         points, cells, sets, element_sets = self._mesh()
         text = toml_text(self._case_tables())
         return _sandglass.Simulation.of_mesh(
@@ -129,12 +132,14 @@ class Body:
         )
 
     def save(self, file):
-        """Writes the case file, and beside it the mesh, as .h5, if no generator or file makes it."""
+        """Writes the case file and, unless a generator or a file makes the mesh, its .h5."""
         file = os.fspath(file)
         mesh_file = os.path.splitext(file)[0] + ".h5"
         if self.mesh._table is None:
             self.mesh.save(mesh_file)
-        text = toml_text(self._case_tables() | {"mesh": self._mesh_table(os.path.basename(mesh_file))})
+        text = toml_text(
+            self._case_tables() | {"mesh": self._mesh_table(os.path.basename(mesh_file))}
+        )
         with open(file + ".partial", "w", encoding="utf-8") as stream:
             stream.write(text)
         os.replace(file + ".partial", file)
@@ -177,13 +182,17 @@ class Body:
             if each._declared["several"]:
                 found.setdefault(name, []).append(each._toml())
             elif name in found:
-                raise _sandglass.InputError(f"tables: {each._name()} is given twice; it must be one")
+                raise _sandglass.InputError(
+                    f"tables: {each._name()} is given twice; it must be one"
+                )
             else:
                 found[name] = each._toml()
         if method:
             cls = class_for("method")
             base = found.get("method", {"name": "tl-perturbation"})
-            if method.get("name", base["name"]) != base["name"]:  # kappa and the like are the other's
+            if (
+                method.get("name", base["name"]) != base["name"]
+            ):  # kappa and the like are the other's
                 base = {key: base[key] for key in base if key == "precision"}
             found["method"] = cls(**(base | method))._toml()
         return found | self._extra
@@ -194,7 +203,7 @@ def _is_list(value):
 
 
 def _require_table(argument, value, allowed):
-    """Raises TypeError unless a value is a table that is allowed there; None: any but mesh and material."""
+    """Raises TypeError unless a value is an allowed table; None: any but mesh and material."""
     name = value._declared["table"] if isinstance(value, Table) and value._declared else None
     if name is None or (name not in allowed if allowed else name in _OTHER):
         what = "a law such as sg.NeoHookean" if allowed else "tables such as sg.Displacement"

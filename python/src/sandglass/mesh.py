@@ -8,7 +8,8 @@ import _sandglass
 from sandglass.tables import Table, class_for
 from sandglass.toml_text import keys_text
 
-# The nodes of VTK's voxel, whose numbers count along x, then y, then z, in the order of a hexahedron.
+# The nodes of VTK's voxel, whose numbers count along x, then y, then z, in the order of a
+# hexahedron.
 _VOXEL = [0, 1, 3, 2, 4, 5, 7, 6]
 _HEXAHEDRON_TYPE, _VOXEL_TYPE = 12, 11  # of VTK
 
@@ -16,10 +17,10 @@ _HEXAHEDRON_TYPE, _VOXEL_TYPE = 12, 11  # of VTK
 class Mesh:
     """Hexahedra in memory, with named sets of nodes and of elements.
 
-    `points`: (n, 3) in m. `cells`: (m, 8) integers, the nodes of each hexahedron in VTK order, counted from 0.
-    `sets`, `element_sets`: dicts from names to arrays of nodes, or of elements. Raises TypeError for arrays of
-    another type and InputError for other shapes, unknown nodes, nodes without cell and points that are not
-    finite.
+    `points`: (n, 3) in m. `cells`: (m, 8) integers, the nodes of each hexahedron in VTK order,
+    counted from 0. `sets`, `element_sets`: dicts from names to arrays of nodes, or of elements.
+    Raises TypeError for arrays of another type and InputError for other shapes, unknown nodes,
+    nodes without cell and points that are not finite.
     """
 
     def __init__(self, points, cells, sets=None, element_sets=None):
@@ -52,7 +53,7 @@ class Mesh:
 
     @classmethod
     def of(cls, source):
-        """A mesh of a Mesh, a generator such as `sg.Box`, the path of a file, or an object of meshio or VTK.
+        """A mesh of a Mesh, a generator such as `sg.Box`, a path, or an object of meshio or VTK.
 
         Raises TypeError for anything else, and InputError.
         """
@@ -86,8 +87,8 @@ class Mesh:
     def of_meshio(cls, mesh):
         """The hexahedra of a `meshio.Mesh`; nodes of no hexahedron are left out.
 
-        Its point_sets and cell_sets are sets; Gmsh's physical groups too: of hexahedra sets of elements, and
-        all of them sets of nodes. Raises InputError for a mesh without hexahedra.
+        Its point_sets and cell_sets are sets; Gmsh's physical groups too: of hexahedra sets of
+        elements, and all of them sets of nodes. Raises InputError for a mesh without hexahedra.
         """
         blocks = [k for k, block in enumerate(mesh.cells) if block.type == "hexahedron"]
         if not blocks:
@@ -120,8 +121,8 @@ class Mesh:
     def of_vtk(cls, grid):
         """The hexahedra and voxels of a `vtkUnstructuredGrid`, such as pyvista's.
 
-        Point arrays of 0 and 1 are sets of nodes, cell arrays of 0 and 1 sets of elements. Raises InputError
-        if other cells are in it.
+        Point arrays of 0 and 1 are sets of nodes, cell arrays of 0 and 1 sets of elements. Raises
+        InputError if other cells are in it.
         """
         from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -176,7 +177,8 @@ class Mesh:
 
     def __repr__(self):
         names = ", ".join(map(repr, self.sets))
-        return f"<sg.Mesh: {len(self.points)} points, {len(self.cells)} cells, sets: {names or 'none'}>"
+        counts = f"{len(self.points)} points, {len(self.cells)} cells"
+        return f"<sg.Mesh: {counts}, sets: {names or 'none'}>"
 
 
 def _named(argument, sets):

@@ -6,7 +6,12 @@ import numpy as np
 
 import _sandglass
 
-_UNITS = {"displacement": "m", "velocity": "m/s", "stress": "Pa", "hourglass_energy_density": "J/m$^3$"}
+_UNITS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "stress": "Pa",
+    "hourglass_energy_density": "J/m$^3$",
+}
 _LIGHT = np.array([0.35, -0.5, 0.8])  # where the light comes from
 
 
@@ -35,11 +40,13 @@ def _owners(cells, faces):
     for element, nodes in enumerate(cells.tolist()):
         for node in nodes:
             touching.setdefault(node, set()).add(element)
-    return np.array([min(set.intersection(*(touching[n] for n in face))) for face in faces.tolist()])
+    return np.array(
+        [min(set.intersection(*(touching[n] for n in face))) for face in faces.tolist()]
+    )
 
 
 def draw(points, cells, faces, frame, field, scale, ax):
-    """See Solution.plot. faces: (k, 4), those on the boundary, counterclockwise seen from outside."""
+    """See Solution.plot. faces: (k, 4), on the boundary, counterclockwise seen from outside."""
     import matplotlib.pyplot as plt
     from matplotlib import cm, colors
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -54,12 +61,16 @@ def draw(points, cells, faces, frame, field, scale, ax):
     rgba[:, :3] *= (0.7 + 0.3 * np.clip(shade, 0, 1))[:, None]
     if ax is None:
         ax = plt.figure(figsize=(7, 5), layout="constrained").add_subplot(projection="3d")
-    ax.add_collection3d(Poly3DCollection(corners, facecolors=rgba, edgecolors=(0, 0, 0, 0.3), linewidths=0.3))
+    ax.add_collection3d(
+        Poly3DCollection(corners, facecolors=rgba, edgecolors=(0, 0, 0, 0.3), linewidths=0.3)
+    )
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     middle, half = (low + high) / 2, max((high - low).max() / 2, 1e-12)
     for name, center, size in zip("xyz", middle, (high - low) / 2):
-        getattr(ax, f"set_{name}lim")(center - max(size, 0.1 * half), center + max(size, 0.1 * half))
-        getattr(ax, f"set_{name}label")(f"{name} (m)")
+        getattr(ax, f"set_{name}lim")(
+            center - max(size, 0.1 * half), center + max(size, 0.1 * half)
+        )
+        getattr(ax, f"set_{name}label")(f"{name} (m)", labelpad=8)
         getattr(ax, f"{name}axis").set_major_locator(plt.MaxNLocator(3))
     ax.set_box_aspect(np.maximum(high - low, 0.2 * half), zoom=0.75)
     name = "von Mises stress" if field == "stress" else field.replace("_", " ")

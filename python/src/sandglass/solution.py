@@ -10,8 +10,9 @@ import _sandglass
 class Solution:
     """The answer of `Body.solve`. Arrays are read-only, in the numbering of the mesh, in SI units.
 
-    A static answer has two frames, or more with load levels: the undeformed body first, the answer last. A motion
-    has the frames that its `sg.Dynamics` asks for. Attributes without a frame are those of the last one.
+    A static answer has two frames, or more with load levels: the undeformed body first, the answer
+    last. A motion has the frames that its `sg.Dynamics` asks for. Attributes without a frame are
+    those of the last one.
     """
 
     def __init__(self, answer, name):
@@ -21,7 +22,7 @@ class Solution:
         self.cells = _fixed(cells)  #: (m, 8), VTK order
         self._frames = {}
         self.history = {key: _fixed(column) for key, column in answer.history().items()}
-        """A dict of arrays (rows,): time in s (the load factor of a static answer), energies in J, residual."""
+        """A dict of arrays (rows,): time in s (see `times`), energies in J, residual."""
         self.summary = dict(answer.summary())
         """How the answer was found: seconds, evaluations and residual and stability, or steps."""
 
@@ -30,8 +31,10 @@ class Solution:
 
     def frame(self, number=-1):
         """A frame: a dict of time (s), displacement and velocity (n, 3; m, m/s), volume_ratio (m,),
-        stress (m, 3, 3; Pa, Cauchy, mean of the element), hourglass_energy_density (m,; J/m^3) and reactions, a
-        dict from driven sets to forces (3,; N). Negative numbers count from the end. Raises IndexError."""
+        stress (m, 3, 3; Pa, Cauchy, mean of the element), hourglass_energy_density (m,; J/m^3) and
+        reactions, a dict from driven sets to forces (3,; N). Negative numbers count from the end.
+        Raises IndexError.
+        """
         n = len(self)
         if not -n <= number < n:
             raise IndexError(f"frame {number} must be in [{-n}, {n})")
@@ -43,7 +46,10 @@ class Solution:
 
     @property
     def times(self):
-        """Times of the frames, s; load factors of a static answer; (frames,)."""
+        """Times of the frames, s; (frames,).
+
+        Of a static answer, load factors, which grow beyond 1 while the equilibrium is sought.
+        """
         return _fixed(np.array([self.frame(k)["time"] for k in range(len(self))]))
 
     @property
@@ -63,7 +69,7 @@ class Solution:
 
     @property
     def stress(self):
-        """Cauchy stresses, the mean of each element, Pa; (m, 3, 3). Raises InputError if there are none."""
+        """Cauchy stresses, element means, Pa; (m, 3, 3). Raises InputError if there are none."""
         if "stress" not in self.frame():
             raise _sandglass.InputError("stress: the method computes no stresses")
         return self.frame()["stress"]
@@ -80,19 +86,19 @@ class Solution:
 
     @property
     def energies(self):
-        """The energies of the last row of the history, J: kinetic, strain, hourglass and external work."""
+        """The last energies of the history, J: kinetic, strain, hourglass, external_work."""
         names = ("kinetic", "strain", "hourglass", "external_work")
         return {name: float(self.history[name][-1]) for name in names}
 
     def estimate(self):
-        """The estimated largest and rms distance from the mean-dilatation element's answer on this mesh, m.
+        """The estimated largest and rms distance from the mean-dilatation answer on this mesh, m.
 
         Raises InputError for a motion, and ComputationError.
         """
         return self._answer.estimate()
 
     def to_vtk(self, frame=-1):
-        """A `vtkUnstructuredGrid` of a frame, undeformed, with its arrays; pyvista takes it as it is."""
+        """A `vtkUnstructuredGrid` of a frame, undeformed, with its arrays; for pyvista as it is."""
         from sandglass.vtk_grid import vtk_grid
 
         return vtk_grid(self.points, self.cells, self.frame(frame))
@@ -100,9 +106,9 @@ class Solution:
     def plot(self, field="displacement", *, frame=-1, scale=1.0, ax=None):
         """A picture of the deformed body with matplotlib.
 
-        `field`: an array of the frame, whose vectors show their length and whose stresses show von Mises'.
-        `scale` multiplies displacements. `ax`: 3D axes, else those of a new figure. Returns the figure. Raises
-        InputError for an unknown field.
+        `field`: an array of the frame, whose vectors show their length and whose stresses show von
+        Mises'. `scale` multiplies displacements. `ax`: 3D axes, else those of a new figure.
+        Returns the figure. Raises InputError for an unknown field.
         """
         from sandglass.picture import draw
 
@@ -110,7 +116,7 @@ class Solution:
         return draw(self.points, self.cells, faces, self.frame(frame), field, scale, ax)
 
     def save(self, file):
-        """Writes a result: .h5 (all frames, with an .xdmf for ParaView), or .vtu or .npz (the last frame)."""
+        """Writes a result: .h5 (all frames, an .xdmf beside it), .vtu or .npz (the last frame)."""
         file = os.fspath(file)
         ending = os.path.splitext(file)[1]
         if ending == ".h5":
@@ -130,9 +136,8 @@ class Solution:
 
     def __repr__(self):
         largest = np.linalg.norm(self.displacement, axis=1).max()
-        return (
-            f"<sg.Solution of {self.name}: {len(self)} frames, largest displacement {largest:.4g} m>"
-        )
+        frames = f"{len(self)} frames"
+        return f"<sg.Solution of {self.name}: {frames}, largest displacement {largest:.4g} m>"
 
 
 def _fixed(value):

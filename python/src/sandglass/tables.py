@@ -1,7 +1,8 @@
 """The tables of a case as classes, made from the declarations of the solver.
 
-A law, a generator or a kind of force that the solver gains is a class here without a line of Python.
-This file needs nothing but the compiled module: the build also runs it to write tables.pyi.
+A law, a generator or a kind of force that the solver gains is a class here without a line of
+Python. This file needs nothing but the compiled module: the build also runs it to write
+tables.pyi.
 """
 
 import difflib
@@ -15,9 +16,9 @@ _TYPES = {"number": "float", "integer": "int", "text": "str", "flag": "bool", "w
 class Table:
     """A table of a case file: a mesh generator, a law, a load, settings. Parameters are attributes.
 
-    Parameters are keywords; `None` means the default. Numbers may be NumPy's, lists may be arrays. Raises
-    TypeError for a parameter that does not exist, is missing or cannot be written in a case file; values are
-    checked by the solver when it takes the case.
+    Parameters are keywords; `None` means the default. Numbers may be NumPy's, lists may be arrays.
+    Raises TypeError for a parameter that does not exist, is missing or cannot be written in a case
+    file; values are checked by the solver when it takes the case.
     """
 
     _declared = {}  # the declaration of the table
@@ -116,7 +117,8 @@ def _described(key):
     shape = {0: ", a list", 1: ""}.get(key["count"], f", shape ({key['count']},)")
     standard = f"; default: {key['standard']}" if key["standard"] else ""
     optional = "" if key["required"] or standard else "; optional"
-    return f"    `{key['name']}`: {key['type']}{unit}{shape}{rule}{standard}{optional}. {key['meaning']}"
+    kind = f"{key['type']}{unit}{shape}{rule}{standard}{optional}"
+    return f"    `{key['name']}`: {kind}. {key['meaning']}"
 
 
 def _class_of(declared):
@@ -144,7 +146,7 @@ __all__ = ["Table", *CLASSES]
 
 
 def class_for(table, choice=""):
-    """The class of a table, such as "pressure", and of its choice, such as a law; None if there is none."""
+    """The class of a table, such as "pressure", and of its choice, such as a law; else None."""
     for cls in CLASSES.values():
         if cls._declared["table"] == table and cls._declared["choice"] == choice:
             return cls

@@ -7,14 +7,18 @@ import re
 def _value(value):
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, str):  # of JSON's escapes, TOML lacks none that occur, but one must be added
+    if isinstance(
+        value, str
+    ):  # of JSON's escapes, TOML lacks none that occur, but one must be added
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, dict):
         entries = ", ".join(f"{_key(key)} = {_value(entry)}" for key, entry in value.items())
         return "{ " + entries + " }" if entries else "{}"
     if isinstance(value, list):
         return "[" + ", ".join(map(_value, value)) + "]"
-    return repr(value)  # integers, and numbers with as many digits as they need, inf and nan among them
+    return repr(
+        value
+    )  # integers, and numbers with as many digits as they need, inf and nan among them
 
 
 def _key(key):
