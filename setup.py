@@ -1,4 +1,4 @@
-"""The wheel: CMake builds module and program, as for the Debian package; setuptools packs them.
+"""The wheel: CMake builds package and program, as for the Debian package; setuptools packs them.
 
 Beside the module it has the program and the cases, below bin/ and share/ of the environment.
 """
@@ -49,6 +49,10 @@ class Build(build_ext):
         self.mkpath(str(Path(self.get_ext_fullpath(module.name)).parent))
         built = BUILD / "python" / os.path.basename(self.get_ext_filename(module.name))
         self.copy_file(str(built), self.get_ext_fullpath(module.name))
+        # The package as the build left it, with the stubs that the build wrote.
+        package = Path(self.get_ext_fullpath(module.name)).parent / "sandglass"
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(BUILD / "python/sandglass", package, ignore=ignored, dirs_exist_ok=True)
         stage = Path(self.build_temp).resolve() / "prefix"
         shutil.rmtree(stage, ignore_errors=True)
         options = ["--component", "runtime", "--strip"]
@@ -64,6 +68,6 @@ class Build(build_ext):
 setup(
     version=version(),
     packages=[],
-    ext_modules=[Extension("sandglass", [])],
+    ext_modules=[Extension("_sandglass", [])],
     cmdclass={"build_ext": Build},
 )

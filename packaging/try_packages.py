@@ -110,7 +110,7 @@ def use(system, case, run, module_in):
     system.run(f"{activate}sandglass mesh hook.toml -o hook.h5")
     script = "import sandglass; sandglass.Simulation('hook.toml').settle(); "
     script += "print(sandglass.__file__, sandglass.__version__)"
-    system.run(f'{activate}{python} -c "{script}"', says=f"{module_in}/sandglass.")
+    system.run(f'{activate}{python} -c "{script}"', says=f"{module_in}/sandglass/")
     done = "1.00 s: largest displacement"
     system.run(f"{activate}{python} example.py {case} moved 0.03 0 0", says=done)
     system.run(f"{activate}sandglass run missing.toml", says="missing.toml", code=2)

@@ -1,12 +1,10 @@
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <atomic>
 #include <limits>
 #include <variant>
 
+#include "answer.hpp"
 #include "sandglass/simulation.hpp"
 
 namespace py = pybind11;
@@ -16,10 +14,10 @@ namespace {
 
 using Vector = std::array<double, 3>;
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Integers = py::array_t<std::int64_t, py::array::c_style>;  // arrays of fractions are rejected
+using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 /// A simulation in either precision, used by one thread at a time.
-class AnySimulation {
+class AnySimulation : public NeverUnmade {
  public:
   /// `arguments` are those of Simulation; `precision` is "double" or "float".
   template <class... Arguments>
@@ -29,6 +27,7 @@ class AnySimulation {
   /// Returns `use(simulation)`. Throws if another thread is using the simulation.
   template <class Use>
   auto with(const Use& use) {
+    require_made("Simulation");
     if (busy_.test_and_set()) throw std::runtime_error("the simulation is busy in another thread");
     const Release release{busy_};
     return std::visit(use, simulation_);
@@ -96,8 +95,40 @@ py::array displacements(const py::object& self) {
   });
 }
 
-void require_shape(bool right, const std::string& name, const char* shape) {
-  if (!right) throw InputError(name + " must have the shape " + shape);
+using Arrays = std::map<std::string, py::object>;
+
+/// Anything that NumPy takes for an array.
+py::array array_of(const std::string& name, const py::object& object) {
+  if (py::array array = py::array::ensure(object)) return array;
+  throw py::type_error(name + " must be an array, but is a " +
+                       py::str(py::type::of(object).attr("__name__")).cast<std::string>());
+}
+
+std::string shape_of(const py::array& array) {
+  return py::str(array.attr("shape")).cast<std::string>();
+}
+
+void require_shape(bool right, const std::string& name, const py::array& array, const char* shape) {
+  if (!right) throw InputError(name + " must have the shape " + shape + ", but has " + shape_of(array));
+}
+
+/// Throws a TypeError unless the entries are of one of the kinds of NumPy: "i", "u" or "f".
+void require_kind(const std::string& name, const py::array& array, std::string_view kinds, const char* rule) {
+  if (kinds.find(array.dtype().kind()) != std::string_view::npos || array.size() == 0) return;
+  throw py::type_error(name + " must be an array of " + rule + ", but has the dtype " +
+                       py::str(array.dtype()).cast<std::string>());
+}
+
+Doubles real(const std::string& name, const py::object& object) {
+  const py::array array = array_of(name, object);
+  require_kind(name, array, "iuf", "numbers");
+  return array;
+}
+
+Integers whole(const std::string& name, const py::object& object) {
+  const py::array array = array_of(name, object);
+  require_kind(name, array, "iu", "integers");
+  return array;
 }
 
 double number_of(const std::string& /*name*/, double number) {
@@ -111,7 +142,8 @@ int number_of(const std::string& name, std::int64_t node) {
 /// The rows of an array of shape (n, width).
 template <class Row, class T, int flags>
 std::vector<Row> rows_of(const std::string& name, const py::array_t<T, flags>& array, const char* shape) {
-  require_shape(array.ndim() == 2 && array.shape(1) == signed_size(std::tuple_size_v<Row>), name, shape);
+  require_shape(array.ndim() == 2 && array.shape(1) == signed_size(std::tuple_size_v<Row>), name, array,
+                shape);
   std::vector<Row> rows(static_cast<std::size_t>(array.shape(0)));
   const T* entry = array.data();
   for (Row& row : rows) {
@@ -120,17 +152,17 @@ std::vector<Row> rows_of(const std::string& name, const py::array_t<T, flags>& a
   return rows;
 }
 
-MeshArrays mesh_of(const Doubles& points, const Integers& cells,
-                   const std::map<std::string, Integers>& sets) {
-  MeshArrays mesh{
-      rows_of<Vector>("points", points, "(n, 3)"), rows_of<std::array<int, 8>>("cells", cells, "(m, 8)"), {}};
-  for (const auto& [name, nodes] : sets) {
-    const std::string title = "set '" + name + "'";
-    require_shape(nodes.ndim() == 1, title, "(n,)");
-    auto& set = mesh.sets[name];
-    for (py::ssize_t k = 0; k < nodes.size(); ++k) set.push_back(number_of(title, nodes.at(k)));
+/// The entries of the arrays of sets, which are called `kind` in messages.
+std::map<std::string, std::vector<int>> sets_of(const char* kind, const Arrays& arrays) {
+  std::map<std::string, std::vector<int>> sets;
+  for (const auto& [name, members] : arrays) {
+    const std::string title = std::string(kind) + " '" + name + "'";
+    const Integers numbers = whole(title, members);
+    require_shape(numbers.ndim() == 1, title, members, "(n,)");
+    auto& set = sets[name];
+    for (py::ssize_t k = 0; k < numbers.size(); ++k) set.push_back(number_of(title, numbers.at(k)));
   }
-  return mesh;
+  return sets;
 }
 
 void move(AnySimulation& self, const std::string& set, const Doubles& displacement) {
@@ -145,6 +177,7 @@ void move(AnySimulation& self, const std::string& set, const Doubles& displaceme
 
 SimulationSettings settings(std::optional<std::string> method, std::optional<double> kappa,
                             std::optional<double> damping, double step_fraction, int threads) {
+  require_threads(threads);
   return {std::move(method), kappa, damping, step_fraction, threads};
 }
 
@@ -159,12 +192,11 @@ std::unique_ptr<AnySimulation> of_file(const Path& case_file, const std::string&
                                          settings(method, kappa, damping, step_fraction, threads));
 }
 
-std::unique_ptr<AnySimulation> of_mesh(const Doubles& points, const Integers& cells,
-                                       const std::map<std::string, Integers>& sets,
+std::unique_ptr<AnySimulation> of_mesh(const py::object& points, const py::object& cells, const Arrays& sets,
                                        const std::string& case_text, const std::string& precision,
                                        const Text& method, Number kappa, Number damping, double step_fraction,
-                                       int threads) {
-  return std::make_unique<AnySimulation>(precision, mesh_of(points, cells, sets), case_text,
+                                       int threads, const Arrays& element_sets) {
+  return std::make_unique<AnySimulation>(precision, mesh_arrays(points, cells, sets, element_sets), case_text,
                                          settings(method, kappa, damping, step_fraction, threads));
 }
 
@@ -184,13 +216,21 @@ at a time; `advance` releases the GIL.)";
 constexpr const char* about_mesh =
     R"(A simulation on the given mesh.
 
-`points` (n, 3) in m, `cells` (m, 8) in VTK order, `sets` a dict from names to nodes; `case_text` is the text of a
-case file without [mesh].)";
+`points` (n, 3) in m, `cells` (m, 8) in VTK order, `sets` a dict from names to nodes, `element_sets` one from names to
+elements; `case_text` is the text of a case file without [mesh].)";
 
 }  // namespace
+
+MeshArrays mesh_arrays(const py::object& points, const py::object& cells, const Arrays& sets,
+                       const Arrays& element_sets) {
+  return {rows_of<Vector>("points", real("points", points), "(n, 3)"),
+          rows_of<std::array<int, 8>>("cells", whole("cells", cells), "(m, 8)"), sets_of("set", sets),
+          sets_of("element set", element_sets)};
+}
+
 }  // namespace sandglass
 
-PYBIND11_MODULE(sandglass, m) {
+PYBIND11_MODULE(_sandglass, m) {
   using namespace sandglass;
   using namespace pybind11::literals;
   m.doc() = "Sandglass, an explicit solver for soft solids, step by step.";
@@ -199,12 +239,15 @@ PYBIND11_MODULE(sandglass, m) {
   py::register_exception<InputError>(m, "InputError", PyExc_ValueError);
   py::register_exception<ComputationError>(m, "ComputationError", PyExc_RuntimeError);
 
+  add_answers(m);
+
   py::class_<AnySimulation>(m, "Simulation", about_simulation)
       .def(py::init(&of_file), "case"_a, py::kw_only(), "precision"_a = "double", "method"_a = py::none(),
            "kappa"_a = py::none(), "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1)
       .def_static("of_mesh", &of_mesh, about_mesh, "points"_a, "cells"_a, "sets"_a, "case_text"_a,
                   py::kw_only(), "precision"_a = "double", "method"_a = py::none(), "kappa"_a = py::none(),
-                  "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1)
+                  "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1,
+                  "element_sets"_a = py::dict())
       .def("move", &move, "set"_a, "displacement"_a,
            "Sets the position of the driven nodes of a set at the end of the next `advance`: one "
            "displacement (m) for all of them, or one row for each node of `nodes(set)`. Components "

@@ -60,27 +60,41 @@ const std::vector<int>& DrivenProblem::nodes(const std::string& set) const {
   return find(scene_.sets, set, "is not known");
 }
 
-MeshWithSets checked(MeshArrays arrays) {
-  std::vector<bool> met(arrays.points.size(), false);
-  const auto meet = [&](const std::string& name, int node) {
-    if (node < 0 || at(node) >= met.size()) {
-      throw InputError(fmt::format("mesh: {} names node {}; it must be in [0, {})", name, node, met.size()));
+namespace {
+
+/// Sorts sets of numbers below `count`.
+void sort_sets(std::map<std::string, std::vector<int>>& sets, const char* set, const char* member,
+               std::size_t count) {
+  for (auto& [name, members] : sets) {
+    for (const int number : members) {
+      if (number >= 0 && at(number) < count) continue;
+      throw InputError(
+          fmt::format("mesh: {} '{}' names {} {}; it must be in [0, {})", set, name, member, number, count));
     }
-    met[at(node)] = true;
-  };
-  for (auto& [name, nodes] : arrays.sets) {
-    for (const int node : nodes) meet(fmt::format("set '{}'", name), node);
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    std::sort(members.begin(), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
   }
-  std::fill(met.begin(), met.end(), false);
+}
+
+}  // namespace
+
+MeshWithSets checked(MeshArrays arrays) {
+  sort_sets(arrays.sets, "set", "node", arrays.points.size());
+  sort_sets(arrays.element_sets, "element set", "element", arrays.cells.size());
+  std::vector<bool> met(arrays.points.size(), false);
   for (std::size_t n = 0; n < arrays.points.size(); ++n) {
     for (const double x : arrays.points[n]) {
       if (!std::isfinite(x)) throw InputError(fmt::format("mesh: node {} is at {}; it must be finite", n, x));
     }
   }
   for (std::size_t e = 0; e < arrays.cells.size(); ++e) {
-    for (const int node : arrays.cells[e]) meet(fmt::format("cell {}", e), node);
+    for (const int node : arrays.cells[e]) {
+      if (node < 0 || at(node) >= met.size()) {
+        throw InputError(
+            fmt::format("mesh: cell {} names node {}; it must be in [0, {})", e, node, met.size()));
+      }
+      met[at(node)] = true;
+    }
   }
   const auto alone = std::find(met.begin(), met.end(), false);
   if (met.empty() || alone != met.end()) {
@@ -88,7 +102,9 @@ MeshWithSets checked(MeshArrays arrays) {
         "mesh: node {} of {} belongs to no cell; each node must belong to one, and there must be nodes",
         std::distance(met.begin(), alone), met.size()));
   }
-  return {{std::move(arrays.points), std::move(arrays.cells)}, std::move(arrays.sets)};
+  return {{std::move(arrays.points), std::move(arrays.cells)},
+          std::move(arrays.sets),
+          std::move(arrays.element_sets)};
 }
 
 void require_in_range(const char* name, double value, const Range& range) {

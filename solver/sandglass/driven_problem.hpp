@@ -18,8 +18,8 @@ inline constexpr Precision precision_of =
 /// Throws InputError, with this name, if the value is out of range.
 void require_in_range(const char* name, double value, const Range& range);
 
-/// A program's arrays as a mesh with sorted sets. Throws InputError if a cell or set names an unknown node,
-/// if a node belongs to no cell or has no finite position, and if there are no nodes.
+/// A program's arrays as a mesh with sorted sets. Throws InputError if a cell or set names an unknown node or
+/// element, if a node belongs to no cell or has no finite position, and if there are no nodes.
 MeshWithSets checked(MeshArrays arrays);
 
 /// The number of equal steps of at most `step` (s) in a time (s); n for a time of n times `step`.

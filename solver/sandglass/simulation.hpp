@@ -15,11 +15,12 @@
 /// kernels: it needs C++20, but no other header and no compiler flag.
 namespace sandglass {
 
-/// A mesh in memory, with named sets of nodes.
+/// A mesh in memory, with named sets of nodes and of elements.
 struct MeshArrays {
-  std::vector<std::array<double, 3>> points = {};     ///< m
-  std::vector<std::array<int, 8>> cells = {};         ///< hexahedra in VTK order; nodes count from 0
-  std::map<std::string, std::vector<int>> sets = {};  ///< name -> nodes
+  std::vector<std::array<double, 3>> points = {};             ///< m
+  std::vector<std::array<int, 8>> cells = {};                 ///< hexahedra in VTK order; nodes count from 0
+  std::map<std::string, std::vector<int>> sets = {};          ///< name -> nodes
+  std::map<std::string, std::vector<int>> element_sets = {};  ///< name -> elements
 };
 
 /// Settings of a program in addition to the case.

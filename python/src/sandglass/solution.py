@@ -1,0 +1,149 @@
+"""The answer of a body as arrays."""
+
+import os
+
+import numpy as np
+
+import _sandglass
+
+
+class Solution:
+    """The answer of `Body.solve`. Arrays are read-only, in the numbering of the mesh, in SI units.
+
+    A static answer has two frames, or more with load levels: the undeformed body first, the answer
+    last. A motion has the frames that its `sg.Dynamics` asks for. Attributes without a frame are
+    those of the last one.
+    """
+
+    def __init__(self, answer, name):
+        self._answer, self.name = answer, name
+        points, cells, self.sets, self.element_sets = answer.mesh()
+        self.points = _fixed(points)  #: (n, 3), m, undeformed; refined where the case refines
+        self.cells = _fixed(cells)  #: (m, 8), VTK order
+        self._frames = {}
+        self.history = {key: _fixed(column) for key, column in answer.history().items()}
+        """A dict of arrays (rows,): time in s (see `times`), energies in J, residual."""
+        self.summary = dict(answer.summary())
+        """How the answer was found: seconds, evaluations and residual and stability, or steps."""
+
+    def __len__(self):
+        return self._answer.frames
+
+    def frame(self, number=-1):
+        """A frame: a dict of time (s), displacement and velocity (n, 3; m, m/s), volume_ratio (m,),
+        stress (m, 3, 3; Pa, Cauchy, mean of the element), hourglass_energy_density (m,; J/m^3) and
+        reactions, a dict from driven sets to forces (3,; N). Negative numbers count from the end.
+        Raises IndexError.
+        """
+        n = len(self)
+        if not -n <= number < n:
+            raise IndexError(f"frame {number} must be in [{-n}, {n})")
+        number = range(n)[number]
+        if number not in self._frames:
+            frame = self._answer.frame(number)
+            self._frames[number] = {key: _fixed(value) for key, value in frame.items()}
+        return self._frames[number]
+
+    @property
+    def times(self):
+        """Times of the frames, s; (frames,).
+
+        Of a static answer, load factors, which grow beyond 1 while the equilibrium is sought.
+        """
+        return _fixed(np.array([self.frame(k)["time"] for k in range(len(self))]))
+
+    @property
+    def displacements(self):
+        """Displacements of all frames, m; (frames, n, 3)."""
+        return _fixed(np.array([self.frame(k)["displacement"] for k in range(len(self))]))
+
+    @property
+    def displacement(self):
+        """Displacements, m; (n, 3)."""
+        return self.frame()["displacement"]
+
+    @property
+    def velocity(self):
+        """Velocities, m/s; (n, 3)."""
+        return self.frame()["velocity"]
+
+    @property
+    def stress(self):
+        """Cauchy stresses, element means, Pa; (m, 3, 3). Raises InputError if there are none."""
+        if "stress" not in self.frame():
+            raise _sandglass.InputError("stress: the method computes no stresses")
+        return self.frame()["stress"]
+
+    @property
+    def volume_ratio(self):
+        """Deformed over undeformed volume of each element; (m,)."""
+        return self.frame()["volume_ratio"]
+
+    @property
+    def reactions(self):
+        """The forces that hold or drive sets of nodes, N; a dict from sets to arrays (3,)."""
+        return self.frame()["reactions"]
+
+    @property
+    def energies(self):
+        """The last energies of the history, J: kinetic, strain, hourglass, external_work."""
+        names = ("kinetic", "strain", "hourglass", "external_work")
+        return {name: float(self.history[name][-1]) for name in names}
+
+    def estimate(self):
+        """The estimated largest and rms distance from the mean-dilatation answer on this mesh, m.
+
+        Raises InputError for a motion, and ComputationError.
+        """
+        return self._answer.estimate()
+
+    def to_vtk(self, frame=-1):
+        """A `vtkUnstructuredGrid` of a frame, undeformed, with its arrays; for pyvista as it is."""
+        from sandglass.vtk_grid import vtk_grid
+
+        return vtk_grid(self.points, self.cells, self.frame(frame))
+
+    def plot(self, field="displacement", *, frame=-1, scale=1.0, ax=None):
+        """A picture of the deformed body with matplotlib.
+
+        `field`: an array of the frame, whose vectors show their length and whose stresses show von
+        Mises'. `scale` multiplies displacements. `ax`: 3D axes, else those of a new figure.
+        Returns the figure. Raises InputError for an unknown field.
+        """
+        from sandglass.picture import draw
+
+        faces = self._answer.boundary()
+        return draw(self.points, self.cells, faces, self.frame(frame), field, scale, ax)
+
+    def save(self, file):
+        """Writes a result: .h5 (all frames, an .xdmf beside it), .vtu or .npz (the last frame)."""
+        file = os.fspath(file)
+        ending = os.path.splitext(file)[1]
+        if ending == ".h5":
+            self._answer.write(file, f"the Python module sandglass {_sandglass.__version__}")
+            return
+        if ending not in (".vtu", ".npz"):
+            raise _sandglass.InputError(f"file = '{file}' must end in .h5, .vtu or .npz")
+        partial = f"{file}.partial{ending}"
+        if ending == ".vtu":
+            from sandglass.vtk_grid import write_vtu
+
+            write_vtu(self.to_vtk(), partial)
+        else:
+            arrays = {key: value for key, value in self.frame().items() if key != "reactions"}
+            np.savez_compressed(partial, points=self.points, cells=self.cells, **arrays)
+        os.replace(partial, file)
+
+    def __repr__(self):
+        largest = np.linalg.norm(self.displacement, axis=1).max()
+        frames = f"{len(self)} frames"
+        return f"<sg.Solution of {self.name}: {frames}, largest displacement {largest:.4g} m>"
+
+
+def _fixed(value):
+    """An array, or the arrays of a dict, made read-only."""
+    if isinstance(value, dict):
+        return {key: _fixed(entry) for key, entry in value.items()}
+    if isinstance(value, np.ndarray):
+        value.flags.writeable = False
+    return value
