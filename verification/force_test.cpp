@@ -110,7 +110,7 @@ TEST(Force, pressure_acts_on_plane_faces_as_derived) {
 }
 
 /// When all nodes move alike, springs and dashpots resist by their shares of the area: the whole motion, or
-/// its part along the normal.
+/// its part along the normal. Springs alone need no time step.
 TEST(Force, supports_act_on_plane_faces_as_derived) {
   const Vector u{0.1, -0.2, 0.4}, increment{0.03, 0.01, 0.02};
   const auto normal_part = [](const Vector& v) {
@@ -120,7 +120,7 @@ TEST(Force, supports_act_on_plane_faces_as_derived) {
   for (const bool only_normal : {false, true}) {
     for (const double damping : {0.0, 0.5}) {
       Surface surface;
-      const double k = 11.0, step = 0.25;
+      const double k = 11.0, step = damping > 0.0 ? 0.25 : 0.0, rate = damping > 0.0 ? damping / step : 0.0;
       const auto force = surface.made(Support{"surface", k, damping, only_normal});
       const Added added(*force, surface.masses, u, increment, step);
       const Vector a = only_normal ? normal_part(u) : u, b = only_normal ? normal_part(increment) : increment;
@@ -128,7 +128,7 @@ TEST(Force, supports_act_on_plane_faces_as_derived) {
         const double share = surface.shares[n];
         Vector expected{};
         for (std::size_t i = 0; i < 3; ++i) {
-          expected[i] = -share * (k * a[i] + damping / step * b[i]);
+          expected[i] = -share * (k * a[i] + rate * b[i]);
           const double directed = only_normal ? axes[2][i] * axes[2][i] : 1.0;
           EXPECT_NEAR(added.stiffness[n][i], k * share * directed, 1e-6 * k * 9.0);  // of floats
         }
@@ -181,6 +181,7 @@ TEST(Force, derives_from_its_potential) {
   compare(DeadForce{.set = "surface", .total = {1.0, 2.0, 3.0}, .moment = {4.0, 5.0, 6.0}});
   compare(Gravity{{1.0, 2.0, 3.0}});
   compare(Pressure{"all", 7.0});
+  compare(Pressure{"all", 1.0 / largest_factor});  // 1 Pa
   compare(Support{"surface", 11.0, 0.0, false});
   compare(Support{"surface", 11.0, 0.0, true});
 }

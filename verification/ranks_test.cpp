@@ -177,19 +177,41 @@ TEST(Ranks, too_many_are_refused) {
   }
 }
 
+/// The message of the wrong input that ends a motion.
+std::string refusal_of(const Scene& scene, std::shared_ptr<const Ranks> ranks) {
+  Observer silent;
+  try {
+    integrate(Model(scene, {.method = "tl-perturbation", .ranks = std::move(ranks)}), silent);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
 TEST(Ranks, unsupported_features_are_refused) {
   Scene scene = block(sample_law<NeoHookean>(0.45), false, {4, 4, 18});
   scene.settings.dynamics.subcycles = 4;
-  const auto messages = ThreadRanks(2).run([&](std::shared_ptr<const Ranks> ranks) -> std::string {
-    Observer silent;
-    try {
-      integrate(Model(scene, {.method = "tl-perturbation", .ranks = std::move(ranks)}), silent);
-      return "";
-    } catch (const InputError& error) {
-      return error.what();
-    }
-  });
+  const auto messages = ThreadRanks(2).run(
+      [&](std::shared_ptr<const Ranks> ranks) { return refusal_of(scene, std::move(ranks)); });
   for (const auto& message : messages) EXPECT_NE(message.find("subcycles"), std::string::npos);
+}
+
+/// Elements at one end of the block are flatter: the first or the last rank has the one that is named.
+TEST(Ranks, element_that_sets_the_stable_step_is_found_on_any_rank) {
+  for (const std::size_t flat : {0U, 17U}) {
+    CaseOnMesh block = block_case(sample_law<NeoHookean>(0.45), false, {4, 4, 18});
+    for (std::size_t n = 0; n < 25; ++n) {
+      double& z = block.mesh.points[n + 25 * (flat == 0 ? 1 : flat)][2];
+      z += flat == 0 ? -0.01 : 0.01;
+    }
+    block.description.dynamics.time_step = 1.0;
+    const Scene scene = make_scene(block);
+    const std::string alone = refusal_of(scene, std::make_shared<const Ranks>());
+    EXPECT_NE(alone.find("set by element"), std::string::npos) << alone;
+    const auto messages = ThreadRanks(2).run(
+        [&](std::shared_ptr<const Ranks> ranks) { return refusal_of(scene, std::move(ranks)); });
+    for (const auto& message : messages) EXPECT_EQ(message, alone);
+  }
 }
 
 }  // namespace

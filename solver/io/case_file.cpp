@@ -175,7 +175,8 @@ MeshWithSets read_mesh_of(const Case& description, const MeshFile& file) {
     const bool ours = is_foreign_mesh(file.path) || ending == ".h5" || ending == ".hdf5";
     throw InputError(fmt::format(
         "{}: mesh.file: {}{}", description.file.string(), error.what(),
-        ours ? "" : "; a file that is not HDF5 must end in .msh (Gmsh), .inp (Abaqus), .vtu, .vtk, .npy or .nii"));
+        ours ? ""
+             : "; a file that is not HDF5 must end in .msh (Gmsh), .inp (Abaqus), .vtu, .vtk, .npy or .nii"));
   }
 }
 
