@@ -99,31 +99,6 @@ def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, 
     assert code == (0 if at == 42 else 2) and message in said and said.count("\n") == 1, said
 
 
-@pytest.mark.parametrize(
-    "at, value, message",
-    [
-        (80, "<f4", "should be"),  # the sizes of voxels, which nibabel would repair
-        (123, "u1", "code 7 in its header is unknown"),
-        (254, "<i2", "sform_code"),
-        (42, "<i2", "8 bytes follow its 1 x 2 x 2 voxels: does the header fit the file?"),
-        (None, "", "Expected 12 bytes, got 11"),
-    ],
-)
-def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, message):
-    nibabel = pytest.importorskip("nibabel")
-    image = nibabel.Nifti1Image(LABELS, np.diag([1.0, 2.0, 3.0, 1.0]))
-    data = bytearray(image.to_bytes())
-    if at is None:
-        del data[-1]
-    else:
-        put = np.array({80: -1, 123: 7, 254: 99, 42: 1}[at], value).tobytes()
-        data[at : at + len(put)] = put
-    (tmp_path / "a.nii").write_bytes(data)
-    code = convert.main(["mesh", str(tmp_path / "a.nii"), str(tmp_path / "b.h5")])
-    said = "".join(capfd.readouterr())
-    assert code == (0 if at == 42 else 2) and message in said and said.count("\n") == 1, said
-
-
 def test_a_segmentation_is_a_body_of_several_materials(tmp_path):
     """The case stiff-core, whose elements are cubes, from its labels: the same answer."""
     labels = np.ones((6, 6, 12), dtype=np.int16)
