@@ -42,7 +42,7 @@ default_role = "code"  # docstrings have their code between single backquotes
 # Every name must resolve, except those of other libraries and of template parameters.
 nitpick_ignore_regex = [
     (r"cpp:.*", r"(sandglass|std|std::.*|size_t|Real|Parts)"),
-    (r"py:.*", r"(os\.PathLike|object|numpy.*|handle|int\d+|float\d+)"),
+    (r"py:.*", r"(os\.PathLike|object|numpy.*|handle|int\d+|float\d+|_sandglass\..*)"),
 ]
 
 html_theme = "furo"

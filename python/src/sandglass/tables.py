@@ -133,7 +133,7 @@ def _class_of(declared):
     members = {
         "_declared": declared,
         "_keys": keys,
-        "__doc__": "\n".join(lines),
+        "__doc__": "\n".join(lines).replace("|", r"\|"),  # in reST |x| is a substitution
         "__module__": "sandglass",
         "__signature__": inspect.Signature(parameters),
     }
