@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/mesh.hpp"
+#include "mesh/vectors.hpp"
 
 /// The geometry of obstacles, each with its half thickness (m), and for a point x (m), the distance from the
 /// surface, negative inside, and its gradient.
@@ -14,19 +14,6 @@ struct Gap {
   double distance;
   Vector normal;
 };
-
-inline double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-inline Vector difference(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-/// a + s b.
-inline Vector sum(const Vector& a, double s, const Vector& b) {
-  return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]};
-}
 
 /// The direction of v; an arbitrary one if v is zero, as at the centre of a sphere.
 inline Vector direction_of(const Vector& v, double length) {

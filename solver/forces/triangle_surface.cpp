@@ -16,10 +16,6 @@ namespace sandglass {
 
 namespace {
 
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 std::string text_of(const Vector& x) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
 }
@@ -68,11 +64,6 @@ double square_from(const Vector& x, const Vector& low, const Vector& high) {
 }
 
 constexpr int most_in_leaf = 4;
-
-/// As an index.
-constexpr std::size_t number_of(int n) {
-  return static_cast<std::size_t>(n);
-}
 
 /// Points and triangles as they are read; equal points are one.
 struct Soup {
@@ -202,8 +193,8 @@ int TriangleSurface::build(int first, int count) {
   std::nth_element(begin, begin + count / 2, begin + count,
                    [&](const Triangle& a, const Triangle& b) { return place(a) < place(b); });
   build(first, count / 2);  // the next number
-  nodes_[number_of(number)].first = build(first + count / 2, count - count / 2);
-  nodes_[number_of(number)].count = 0;
+  nodes_[sandglass::at(number)].first = build(first + count / 2, count - count / 2);
+  nodes_[sandglass::at(number)].count = 0;
   return number;
 }
 
@@ -229,7 +220,7 @@ void TriangleSurface::set_normals(const std::string& file) {
     for (std::size_t I = 0; I < 3; ++I) {
       const Vector a = difference(corner(t, I + 1), corner(t, I)),
                    b = difference(corner(t, I + 2), corner(t, I));
-      Vector& of_point = of_points[number_of(triangles_[t][I])];
+      Vector& of_point = of_points[sandglass::at(triangles_[t][I])];
       of_point = sum(of_point, std::atan2(length(cross(a, b)), dot(a, b)), normals_[t][0]);
     }
   }
@@ -243,7 +234,7 @@ void TriangleSurface::set_normals(const std::string& file) {
                         file, text_of(point(a)), text_of(point(b))));
       }
       normals_[t][1 + I] = sum(normals_[t][0], 1.0, normals_[other->second][0]);
-      normals_[t][4 + I] = of_points[number_of(a)];
+      normals_[t][4 + I] = of_points[sandglass::at(a)];
     }
   }
 }
@@ -268,14 +259,14 @@ Gap TriangleSurface::at(const Vector& x) const {
   std::array<int, deepest> waiting{};
   std::size_t count = 1;
   const auto square = [&](int number) {
-    const Node& node = nodes_[number_of(number)];
+    const Node& node = nodes_[sandglass::at(number)];
     return square_from(x, node.low, node.high);
   };
   while (count > 0) {
     const int number = waiting[--count];
     if (square(number) >= closest.square) continue;
-    const Node& node = nodes_[number_of(number)];
-    for (int t = node.first; t < node.first + node.count; ++t) compare(x, number_of(t), closest);
+    const Node& node = nodes_[sandglass::at(number)];
+    for (int t = node.first; t < node.first + node.count; ++t) compare(x, sandglass::at(t), closest);
     if (node.count > 0) continue;
     const int near = number + 1, far = node.first;
     const bool swaps = square(far) < square(near);

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "mesh/oddities.hpp"
 #include "mesh/parts.hpp"
+#include "mesh/vectors.hpp"
 
 namespace sandglass {
 
@@ -16,14 +17,6 @@ namespace {
 
 /// Directions and points are described up to this share of a piece.
 constexpr double resolved = 1e-4;
-
-double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// Numbers without the noise of what they were computed from, whose size is `scale`.
 double tidy(double x, double scale) {
