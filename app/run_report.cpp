@@ -222,7 +222,7 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
   if (row.friction != 0.0) fmt::print(", lost to friction {:.3g}", row.friction);
   fmt::print("\n");
   if (!contacts_of(scene.forces).empty()) {
-    const double depth = history.largest_depth();
+    const double depth = history.largest_depth(quasi_static);
     fmt::print("largest depth in an obstacle {}, {:.2g} % of the shortest edge\n", length_text(depth),
                100.0 * depth / shortest_edge(scene.mesh));
   }

@@ -32,8 +32,9 @@ class HistoryReport {
   /// Hourglass over strain energy: at the end of a quasi-static run; in a motion, the largest of each.
   double hourglass_share(bool quasi_static) const;
 
-  /// The largest depth of a node in an obstacle, m.
-  double largest_depth() const { return largest_depth_; }
+  /// The largest depth of a node in an obstacle, m: at the end of a quasi-static run; in a motion, the
+  /// largest.
+  double largest_depth(bool quasi_static) const { return quasi_static ? last_.depth : largest_depth_; }
 
   /// The unexplained energy (J) at the end, negative if some is missing, over the largest energy or work.
   /// `damping` is the mass damping, 1/s.
