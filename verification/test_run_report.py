@@ -252,6 +252,32 @@ def test_no_command_overwrites_what_it_reads(block):
         assert {file.name: file.read_bytes() for file in folder.iterdir()} == before, words
 
 
+def test_the_depth_of_a_static_answer_is_that_of_its_end(block, tmp_path):
+    """The search starts from obstacles that have moved into the body: deeper than in the answer."""
+    held = BARE[: BARE.rindex("[[displacement]]")]
+    block.write_text(
+        held
+        + """
+[[obstacle]]
+name = "ball"
+set = "head"
+shape = "sphere"
+point = [0.05, 0.05, 0.45]
+radius = 0.25
+displacement = [0.0, 0.0, -0.01]
+penalty = 100.0
+"""
+    )
+    output = tmp_path / "a.h5"
+    text = sandglass("run", block, "-o", output, code=0).stdout
+    with h5py.File(output) as file:
+        depths = file["history/depth"][:]
+    assert depths.max() > 1.1 * depths[-1] > 0.0
+    number, prefix = re.search(r"largest depth in an obstacle (\S+) (u?m*m)", text).groups()
+    scale = {"m": 1.0, "mm": 1e-3, "um": 1e-6}[prefix]
+    assert scale * float(number) == pytest.approx(depths[-1], rel=5e-3)  # three digits
+
+
 # Progress.
 
 
