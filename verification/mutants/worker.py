@@ -151,7 +151,7 @@ class Worker:
 
     def _failure(self, patch, programs, since, seconds):
         scripts = {name.partition("/")[0] for name in patch.files} - set(COMPILED)
-        # One call for all that link the changed library: starting ninja takes longer than most tests.
+        # One call for all that link the changed library: ninja takes longer than most tests.
         parts = [programs] if self._sources_only else [[program] for program in programs]
         for program in programs:
             status, text = self._make(*parts.pop(0)) if parts else (0, "")
