@@ -16,7 +16,7 @@ class Contact:
     constraint gap >= 0: augment() improves it. With a penalty it is zero.
 
     obstacle: Obstacle. points: (n, 3) m, undeformed nodes in the order of the displacement. areas:
-    (n,) m^2. modulus: smallest P-wave modulus of the touching elements, Pa. edge: their shortest,
+    (n,) m^2. modulus: smallest Young's modulus of the touching elements, Pa. edge: their shortest,
     m. Attributes: nodes (k,) that may touch, areas (k,), multipliers (k,) in Pa.
     """
 

@@ -142,16 +142,17 @@ def energy(law, volume, F, p, **parameters):
     return isochoric + K * (ufl.diff(u, theta) * (ufl.det(F) - theta) + u)
 
 
-def p_wave_modulus(law, parameters):
-    """lambda + 2 mu of a law near the undeformed state, Pa; of one with fibres, across them."""
+def young_modulus(law, parameters):
+    """Young's modulus of a law near the undeformed state, Pa; of one with fibres, across them."""
 
     def isochoric(stretch):
         F = ufl.as_matrix([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, stretch]])
         return LAWS[law](F, **parameters)[0](())
 
     h = 1e-4
-    second = (isochoric(1 + h) - 2 * isochoric(1.0) + isochoric(1 - h)) / h**2
-    return second + LAWS[law](ufl.Identity(3), **parameters)[1]
+    mu = 0.75 * (isochoric(1 + h) - 2 * isochoric(1.0) + isochoric(1 - h)) / h**2
+    bulk = LAWS[law](ufl.Identity(3), **parameters)[1]
+    return 9 * bulk * mu / (3 * bulk + mu)
 
 
 def parameters(law):

@@ -9,7 +9,7 @@ import ufl
 from dolfinx import fem
 
 from contact import Contact
-from laws import p_wave_modulus
+from laws import young_modulus
 
 # Another process may be compiling the same form: wait for it rather than fail.
 JIT_OPTIONS = {"timeout": 600, "cffi_extra_compile_args": ["-O3", "-g0"]}
@@ -77,7 +77,7 @@ class Loads:
                 areas[space.dofmap.list.array.reshape(-1, 10)[:, :4]] = 0.0
             ends = mesh.points[cell_nodes[cells][:, EDGES[len(cell_nodes[0])]]]
             edge = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2).min()
-            moduli = [p_wave_modulus(m.law, m.parameters) for m in materials]
+            moduli = [young_modulus(m.law, m.parameters) for m in materials]
             modulus = _per_cell(domain, mesh, moduli)[cells].min()
             places = space.tabulate_dof_coordinates()
             self.contacts.append(Contact(touching.obstacle, places, areas, modulus, edge))

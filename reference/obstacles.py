@@ -114,7 +114,7 @@ class Obstacle:
     """A rigid obstacle that the faces within a node set may touch, without friction.
 
     shape: a name in SHAPES. parameters: of its function. displacement: (3,) m, at full load.
-    inside: whether the body is inside of it. penalty: the stiffness over P-wave modulus / edge.
+    inside: whether the body is inside of it. penalty: the stiffness over Young's modulus / edge.
     limit: whether nothing penetrates it, whatever the penalty.
     """
 

@@ -61,7 +61,7 @@ struct Touched {
     std::iota(places.begin(), places.end(), 0);
     ForceResolver resolver{"a.toml", mesh.points, boundary, sets, element_masses, masses};
     resolver.cells = mesh.cells;
-    resolver.wave_moduli = {1000.0};
+    resolver.young_moduli = {1000.0};
     obstacle.resolve(resolver);
     force = resolver.all().back();
     contact = contacts_of({force}).front();
@@ -114,7 +114,9 @@ TEST(Contact, derives_from_its_potential) {
       Rows<double> u = back_again(away, random);
       const Rows<double> forces = body.forces(u);
       Rows<float> roots(8);
-      body.contact->set_contact_stiffness(body.factors, body.at_nodes(u), {roots.data(), body.places});
+      const Rows<double> memory(body.contact->memory());
+      body.contact->set_contact_stiffness(body.factors, body.at_nodes(u), memory.data(),
+                                          {roots.data(), body.places});
       for (std::size_t n = 0; n < 8; ++n) {
         Vector from_potential{};
         const double h = 1e-6;

@@ -13,6 +13,7 @@ struct Touch {
   double stored = 0.0;         ///< energy of the contact, J
   double dissipated = 0.0;     ///< since the start, J
   double worked = 0.0;         ///< by an obstacle that moves nodes, since the start, J
+  int contrary = 0;            ///< nodes whose fixed contact pulls them, or lets them penetrate
 };
 
 /// Nodes that an obstacle may move back onto itself within a step.
@@ -50,9 +51,19 @@ class ContactForce : public BodyForce {
   /// How the body touches it, from these rows.
   virtual Touch touch(const Row<double>* memory) const = 0;
 
+  /// Fixes which nodes touch it, as they did at the last evaluation, or ends that. A fixed contact is a
+  /// spring that pushes and pulls: without it, the force on a body is a smooth function of its displacements.
+  virtual void fix_contact(bool /*fixed*/, Row<double>* /*memory*/) const {}
+
+  /// Moves touching nodes along its normal so that displacements from those of `before` change their depth as
+  /// on a plane: nodes slide along curved obstacles.
+  virtual void slide(Factors /*factors*/, NodalRows /*before*/, const Row<double>* /*memory*/,
+                     AtNodes<Row<double>> /*u*/) const {}
+
   /// Its stiffness where the body touches it now: sets the rows of these nodes to a direction, of length one,
   /// times the root of the stiffness along it (N/m), unless they have a larger one.
-  virtual void set_contact_stiffness(Factors factors, NodalRows u, AtNodes<Row<float>> roots) const = 0;
+  virtual void set_contact_stiffness(Factors factors, NodalRows u, const Row<double>* memory,
+                                     AtNodes<Row<float>> roots) const = 0;
 
   /// Why static equilibrium is not defined with it; empty if it is.
   virtual std::string_view no_rest() const = 0;

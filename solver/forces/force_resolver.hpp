@@ -22,7 +22,7 @@ struct ForceResolver {
   std::map<std::pair<std::size_t, int>, Vector> dead = {};  ///< by curve and node, N
   std::vector<LoadSize> sizes_of_dead = {};
   std::span<const Hexahedron> cells = {};
-  std::vector<double> wave_moduli = {};  ///< of elements, lambda + 2 mu of the undeformed material, Pa
+  std::vector<double> young_moduli = {};  ///< of elements, of the undeformed material, Pa
 
   /// The nodes of the set that a table names. Throws InputError if there is no such set or it is empty.
   const std::vector<int>& nodes(std::string_view table, const std::string& set) const;

@@ -56,7 +56,7 @@ class KinematicContact final : public ObstacleContact {
   void add_potential(Factors /*factors*/, NodalRows /*u*/, double& /*sum*/) const override {}
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
                  std::vector<LoadRates>& /*rates*/) const override {}
-  void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/,
+  void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
                              AtNodes<Row<float>> /*roots*/) const override {}
   std::size_t memory() const override { return Memory::own + own + nodes_.size(); }
   std::string_view no_rest() const override { return in_steps; }

@@ -39,8 +39,7 @@ ObstacleShape shape_of(const Obstacle& given, const std::filesystem::path& file)
   return {};
 }
 
-/// The stiffness per area over the penalty, (lambda + 2 mu) / h, and h, of the elements with a face among
-/// these nodes.
+/// The stiffness per area over the penalty, E / h, and h, of the elements with a face among these nodes.
 struct Scale {
   double modulus = INFINITY;  ///< Pa
   double edge = INFINITY;     ///< m
@@ -51,7 +50,7 @@ struct Scale {
     for (std::size_t e = 0; e < resolver.cells.size(); ++e) {
       const Hexahedron& cell = resolver.cells[e];
       if (std::ranges::count_if(cell, [&](int node) { return touches[at(node)]; }) < 4) continue;
-      modulus = std::min(modulus, resolver.wave_moduli[e]);
+      modulus = std::min(modulus, resolver.young_moduli[e]);
       for (const auto& [a, b] : hexahedron_edges)
         edge = std::min(edge, distance(resolver.points[at(cell[a])], resolver.points[at(cell[b])]));
     }

@@ -71,8 +71,8 @@ struct Obstacle {
                   "Coulomb's coefficient, in motions only", false},
         Parameter{
             &O::penalty, "penalty", "-", Range::positive(),
-            "pressure over (lambda + 2 mu) depth / h, with the softest material and the shortest edge h of "
-            "the elements that may touch it",
+            "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of the "
+            "elements that may touch it",
             false},
         Parameter{&O::method, "method", "-", Range::any(),
                   "penalty, or kinematic in motions: every step moves nodes back onto it", false}};

@@ -24,7 +24,8 @@ class ObstacleContact : public ContactForce {
         obstacle_(obstacle),
         shape_(std::move(shape)),
         curve_(curve),
-        start_(start) {}
+        start_(start),
+        rounding_(1e-6 * extent_of(nodes_)) {}
 
   const std::vector<TouchingNode>& touching() const { return nodes_; }
 
@@ -48,7 +49,8 @@ class ObstacleContact : public ContactForce {
             moves[3],
             pushes[3],
             memory[2][0],
-            memory[2][1]};
+            memory[2][1],
+            static_cast<int>(memory[2][2])};
   }
 
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final {
@@ -65,7 +67,7 @@ class ObstacleContact : public ContactForce {
   struct Memory {
     Row<double>& pushes;  ///< force on the body, N; stored energy, J
     Row<double>& moves;   ///< displacement of the obstacle, m; largest depth, m
-    Row<double>& sums;    ///< dissipated energy and work since the start, J
+    Row<double>& sums;    ///< dissipated energy and work since the start, J; contrary nodes; whether fixed
     Row<double>* of_nodes;
 
     static constexpr std::size_t own = 3;
@@ -93,13 +95,25 @@ class ObstacleContact : public ContactForce {
         shape_);
   }
 
+  /// At a position (m) in its frame.
+  Gap gap_at(const Vector& x) const {
+    return facing_body(std::visit([&](const auto& shape) { return shape.at(x); }, shape_));
+  }
+
   const std::vector<TouchingNode> nodes_;
   const Obstacle obstacle_;
   const ObstacleShape shape_;
   const std::size_t curve_;
-  const Vector start_;  // its displacement at the start, m
+  const Vector start_;     // its displacement at the start, m
+  const double rounding_;  // of coordinates in files, m
 
  private:
+  static double extent_of(const std::vector<TouchingNode>& nodes) {
+    double extent = 0.0;
+    for (const TouchingNode& one : nodes) extent = std::max(extent, distance(one.X, nodes.front().X));
+    return extent;
+  }
+
   static std::vector<int> numbers_of(const std::vector<TouchingNode>& nodes) {
     std::vector<int> numbers;
     for (const TouchingNode& one : nodes) numbers.push_back(one.node);

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::string_view path_of_friction = "friction depends on the path";
 
-/// For each node, two rows if there is friction: its anchor (m) and whether it has one, and the spring's
-/// extension, m.
+/// It keeps rows for each node: with friction its anchor, m; whether it touches; with friction a second one,
+/// the extension of the spring, m.
 class PenaltyContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
@@ -21,19 +21,24 @@ class PenaltyContact final : public ObstacleContact {
     const Vector moved = displacement(factors);
     memory.pushes = {};
     memory.moves = {{moved[0], moved[1], moved[2], 0.0}};
-    const bool sticks = obstacle_.friction > 0.0;
+    memory.sums[2] = 0.0;
+    const bool fixed = is_fixed(rows);
     for_each_gap(moved, u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const auto& [node, X, stiffness] = nodes_[k];
-      Row<double>* of_node = memory.of_nodes + by_node * k;
-      if (gap.distance >= 0.0) {
-        if (sticks && of_node[0][3] != 0.0) let_go(stiffness, of_node, memory);
+      Row<double>* of_node = memory.of_nodes + by_node() * k;
+      const bool inside = gap.distance < 0.0, touched = of_node[0][3] != 0.0;
+      const bool touches = fixed ? touched : inside;
+      if (touches != inside) ++memory.sums[2];
+      if (!touches) {
+        if (touched) let_go(stiffness, of_node, memory);
         return;
       }
       const double depth = -gap.distance;
       memory.pushes[3] += 0.5 * stiffness * depth * depth;
       memory.moves[3] = std::max(memory.moves[3], depth);
       Vector force = sum({}, stiffness * depth, gap.normal);
-      if (sticks) force = sum(force, -stiffness, hold(x, gap, stiffness, of_node, memory));
+      if (sticks()) force = sum(force, -stiffness, hold(x, gap, stiffness, of_node, memory));
+      of_node[0][3] = 1.0;
       for (std::size_t i = 0; i < 3; ++i) {
         forces[node][i] += force[i];
         memory.pushes[i] += force[i];
@@ -55,10 +60,29 @@ class PenaltyContact final : public ObstacleContact {
     for (const auto& [node, X, stiffness] : nodes_) rates[at(node)].square += stiffness / masses[at(node)];
   }
 
-  void set_contact_stiffness(Factors factors, NodalRows u, AtNodes<Row<float>> roots) const override {
+  void fix_contact(bool fixed, Row<double>* memory) const override {
+    Memory(memory).sums[3] = fixed ? 1.0 : 0.0;
+  }
+
+  void slide(Factors factors, NodalRows before, const Row<double>* memory,
+             AtNodes<Row<double>> u) const override {
+    const Vector moved = displacement(factors);
+    for_each_gap(moved, before, [&](std::size_t k, const Vector& from, const Gap& gap) {
+      if (!touches(k, gap, memory)) return;
+      const auto& [node, X, stiffness] = nodes_[k];
+      Vector x = X;
+      for (std::size_t i = 0; i < 3; ++i) x[i] += u[node][i] - moved[i];
+      const Gap there = gap_at(x);
+      const double up = gap.distance + dot(gap.normal, difference(x, from)) - there.distance;
+      for (std::size_t i = 0; i < 3; ++i) u[node][i] += up * there.normal[i];
+    });
+  }
+
+  void set_contact_stiffness(Factors factors, NodalRows u, const Row<double>* memory,
+                             AtNodes<Row<float>> roots) const override {
     for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
       const auto& [node, X, stiffness] = nodes_[k];
-      if (gap.distance > 0.0) return;
+      if (!touches(k, gap, memory)) return;
       Row<float>& row = roots[node];
       const auto there = static_cast<double>(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
       if (there >= stiffness) return;
@@ -66,9 +90,7 @@ class PenaltyContact final : public ObstacleContact {
     });
   }
 
-  std::size_t memory() const override {
-    return Memory::own + (obstacle_.friction > 0.0 ? by_node * nodes_.size() : 0);
-  }
+  std::size_t memory() const override { return Memory::own + by_node() * nodes_.size(); }
 
   std::string_view no_rest() const override { return traits().no_potential; }
 
@@ -84,7 +106,15 @@ class PenaltyContact final : public ObstacleContact {
   }
 
  private:
-  static constexpr std::size_t by_node = 2;
+  bool sticks() const { return obstacle_.friction > 0.0; }
+  std::size_t by_node() const { return sticks() ? 2 : 1; }
+
+  /// Whether a node is linearized as touching: unless it is fixed, also where body and obstacle just fit.
+  bool touches(std::size_t k, const Gap& gap, const Row<double>* memory) const {
+    return is_fixed(memory) ? memory[Memory::own + by_node() * k][3] != 0.0 : gap.distance <= rounding_;
+  }
+
+  static bool is_fixed(const Row<double>* memory) { return memory[2][3] != 0.0; }
 
   std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
     return make_penalty_contact(std::move(nodes), obstacle_, shape_, curve_, start_);
@@ -115,10 +145,12 @@ class PenaltyContact final : public ObstacleContact {
     return along;
   }
 
-  static void let_go(double stiffness, Row<double>* of_node, Memory& memory) {
-    const Row<double>& stretch = of_node[1];
+  void let_go(double stiffness, Row<double>* of_node, Memory& memory) const {
+    of_node[0] = {};
+    if (!sticks()) return;
+    Row<double>& stretch = of_node[1];
     for (std::size_t i = 0; i < 3; ++i) memory.sums[0] += 0.5 * stiffness * stretch[i] * stretch[i];
-    of_node[0] = of_node[1] = {};
+    stretch = {};
   }
 };
 

@@ -68,11 +68,6 @@ class Elements final : public ElementLevel {
     for (std::size_t row = 0; row < springs_.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) stiffness_[row][i] += springs_[row][i];
     }
-    for (const std::size_t row : touching_) {  // the sums of rows: D - A stays positive
-      const Row<float>& s = contact_[row];
-      const float sum = std::abs(s[0]) + std::abs(s[1]) + std::abs(s[2]);
-      for (std::size_t i = 0; i < 3; ++i) stiffness_[row][i] += std::abs(s[i]) * sum;
-    }
     layout_.gather_rows(stiffness_.data());
     layout_.gather_cells(tangents_.data());
     set_smoother(stiffness_, largest_of_all(*std::ranges::max_element(bounds)));

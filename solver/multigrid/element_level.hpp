@@ -55,9 +55,6 @@ class ElementLevel : public SaddleLevel {
   /// The stiffness of springs that hold the rows, N/m; empty without any.
   const Rows<float>& springs() const { return springs_; }
 
-  /// Springs along one direction for each row, as in `set_contact`; empty without any.
-  const Rows<float>& contact() const { return contact_; }
-
   /// Sets these springs: the direction times the root of the stiffness, root of N/m. `update` must follow.
   void set_contact(const Rows<float>& roots) {
     contact_ = roots;
@@ -80,8 +77,6 @@ class ElementLevel : public SaddleLevel {
   std::vector<std::size_t> cells_;
   std::vector<ElementTangent> tangents_;
   Rows<float> springs_;
-  Rows<float> contact_;
-  std::vector<std::size_t> touching_;  // rows with springs of contact
   Rows<float> stiffness_;
 };
 

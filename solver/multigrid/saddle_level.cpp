@@ -19,13 +19,13 @@ void for_all(const Blocks& blocks, const Body& body) {
   });
 }
 
+/// The scale of D, see SaddleLevel::relaxation.
+constexpr float relaxation_step = 1.3f;
+
 /// The largest eigenvalue of D M, M symmetric, within 3^(1/4): the trace of the fourth power bounds its
 /// fourth power.
-float eigenvalue_bound(const Row<float>& D, const Tensor<float>& M) {
-  Tensor<float> DM;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) DM(i, j) = D[static_cast<std::size_t>(i)] * M(i, j);
-  }
+float eigenvalue_bound(const Tensor<float>& D, const Tensor<float>& M) {
+  Tensor<float> DM = D * M;
   DM = DM * DM;
   DM = DM * DM;
   return std::sqrt(std::sqrt(DM(0, 0) + DM(1, 1) + DM(2, 2)));
@@ -46,10 +46,9 @@ void SaddleLevel::resize(std::size_t rows, std::size_t cells) {
 }
 
 void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
-  constexpr float step = 1.3f;
   for (std::size_t r = 0; r < free_.size(); ++r) {
     for (std::size_t i = 0; i < 3; ++i) {
-      relaxation_[r][i] = free_[r][i] > 0.0f ? step / (bound * diagonal[r][i]) : 0.0f;
+      relaxation_[r][i] = free_[r][i] > 0.0f ? relaxation_step / (bound * diagonal[r][i]) : 0.0f;
     }
   }
   // At each node, S couples the cells around it through M = sum of b b^T / (b^T D b): the largest eigenvalue
@@ -58,7 +57,9 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   std::vector<Tensor<float>> M(free_.size());
   for_each_corner([&](std::size_t cell, std::size_t row, const std::array<float, 3>& b) {
     const Row<float>& D = relaxation_[row];
-    const float own = D[0] * b[0] * b[0] + D[1] * b[1] * b[1] + D[2] * b[2] * b[2];
+    Row<float> Db{{D[0] * b[0], D[1] * b[1], D[2] * b[2]}};
+    if (!contact_.empty()) hold_back(row, Db, Db);
+    const float own = Db[0] * b[0] + Db[1] * b[1] + Db[2] * b[2];
     schur_[cell] += own;
     if (!(own > 0.0f)) return;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -69,15 +70,38 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   });
   float largest = 1.0f;
   for (std::size_t r = blocks_.u.own().first / 4; r < blocks_.u.own().last / 4; ++r)
-    largest = std::max(largest, eigenvalue_bound(relaxation_[r], M[r]));
+    largest = std::max(largest, eigenvalue_bound(full_relaxation(r), M[r]));
   largest = static_cast<float>(blocks_.u.ranks().largest(largest));
   for (float& s : schur_) s = s > 0.0f ? 1.0f / (largest * s) : 0.0f;
+}
+
+/// By the formula of Sherman and Morrison.
+void SaddleLevel::hold_back(std::size_t row, Row<float> relaxed, Row<float>& u) const {
+  const Row<float>&s = contact_[row], &D = relaxation_[row];
+  float stiffness = relaxation_step, force = 0.0f;
+  for (std::size_t i = 0; i < 3; ++i) {
+    stiffness += D[i] * s[i] * s[i];
+    force += s[i] * relaxed[i];
+  }
+  for (std::size_t i = 0; i < 3; ++i) u[i] -= D[i] * s[i] * force / stiffness;
+}
+
+Tensor<float> SaddleLevel::full_relaxation(std::size_t row) const {
+  Tensor<float> full;
+  for (std::size_t j = 0; j < 3; ++j) {
+    Row<float> column;
+    column[j] = relaxation_[row][j];
+    if (!contact_.empty()) hold_back(row, column, column);
+    for (std::size_t i = 0; i < 3; ++i) full(static_cast<int>(i), static_cast<int>(j)) = column[i];
+  }
+  return full;
 }
 
 void SaddleLevel::smooth_from_zero(const MixedVector& b, MixedVector& x) {
   const float *f = numbers_of(b.u), *D = numbers_of(relaxation_);
   float* u = numbers_of(x.u);
   for_all(blocks_.u, [=](std::size_t k) { u[k] = D[k] * f[k]; });
+  for (const std::size_t row : touching_) hold_back(row, x.u[row], x.u[row]);
   std::fill(x.p.begin(), x.p.end(), 0.0f);
   relax_pressures(b, x);
 }
@@ -87,6 +111,11 @@ void SaddleLevel::smooth(const MixedVector& b, MixedVector& x) {
   const float *f = numbers_of(b.u), *D = numbers_of(relaxation_), *y = numbers_of(y_.u);
   float* u = numbers_of(x.u);
   for_all(blocks_.u, [=](std::size_t k) { u[k] += D[k] * (f[k] - y[k]); });
+  for (const std::size_t row : touching_) {
+    Row<float> relaxed;
+    for (std::size_t i = 0; i < 3; ++i) relaxed[i] = relaxation_[row][i] * (b.u[row][i] - y_.u[row][i]);
+    hold_back(row, relaxed, x.u[row]);
+  }
   relax_pressures(b, x);
 }
 
@@ -106,6 +135,7 @@ void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
   for (int step = 1; step < pressure_steps_; ++step) {
     gradient(change_, t_);
     for_all(blocks_.u, [=](std::size_t k) { t[k] *= D[k]; });
+    for (const std::size_t row : touching_) hold_back(row, t_[row], t_[row]);
     follow(t_);
     divergence(t_, y_.p);
     const float next = 1.0f / (2.0f * sigma - rho), keep = next * rho, add = 2.0f * next / radius;
@@ -120,6 +150,11 @@ void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
   gradient(sum_, t_);
   float* u = numbers_of(x.u);
   for_all(blocks_.u, [=](std::size_t k) { u[k] -= D[k] * t[k]; });
+  for (const std::size_t row : touching_) {
+    Row<float> relaxed;
+    for (std::size_t i = 0; i < 3; ++i) relaxed[i] = -relaxation_[row][i] * t_[row][i];
+    hold_back(row, relaxed, x.u[row]);
+  }
   follow(x.u);
 }
 

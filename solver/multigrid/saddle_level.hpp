@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "math/matrix.hpp"
 #include "multigrid/mixed_vector.hpp"
 
 namespace sandglass {
@@ -47,8 +48,12 @@ class SaddleLevel {
   void residual(const MixedVector& b, const MixedVector& x, MixedVector& r) const;
 
   /// The diagonal matrix D (m/N): the diagonal of A, inverted and scaled such that D A has eigenvalues below
-  /// 2; zero on constrained components.
+  /// 2; zero on constrained components. Without springs of contact, which are added for each node.
   const Rows<float>& relaxation() const { return relaxation_; }
+
+  /// Springs along one direction for each row, which has the length of the root of the stiffness (N/m); empty
+  /// without any.
+  const Rows<float>& contact() const { return contact_; }
 
   /// 1, or 0 on constrained components and unused rows.
   const Rows<float>& free() const { return free_; }
@@ -63,14 +68,24 @@ class SaddleLevel {
 
   void resize(std::size_t rows, std::size_t cells);
 
-  /// Sets the smoother from the diagonal of A (N/m) and a bound of the eigenvalues of its inverse times A.
+  /// Sets the smoother from the diagonal of A (N/m), without springs of contact, and a bound of the
+  /// eigenvalues of its inverse times A.
   void set_smoother(const Rows<float>& diagonal, float bound);
 
   MixedBlocks blocks_;
   Rows<float> free_;
   std::vector<float> compliance_;  // C
+  Rows<float> contact_;
+  std::vector<std::size_t> touching_;  // rows with springs of contact
 
  private:
+  /// Takes from u (m) of a row the share of a relaxed force D f (m) that its spring s bears: D becomes the
+  /// inverse of D^-1 + s s^T, scaled as D.
+  void hold_back(std::size_t row, Row<float> relaxed, Row<float>& u) const;
+
+  /// D of a row with its spring.
+  Tensor<float> full_relaxation(std::size_t row) const;
+
   void relax_pressures(const MixedVector& b, MixedVector& x);
 
   int pressure_steps_;

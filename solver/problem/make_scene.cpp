@@ -133,12 +133,14 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
   }
 }
 
-/// lambda + 2 mu of each element's undeformed material, Pa.
-std::vector<double> wave_moduli(const Mesh& mesh, const Materials& materials) {
+/// Young's modulus of each element's undeformed material, Pa.
+std::vector<double> young_moduli(const Mesh& mesh, const Materials& materials) {
   const std::vector<double> lambdas = lame_lambdas(materials), moduli = shear_moduli(materials);
   std::vector<double> of_elements(mesh.cells.size());
-  for (std::size_t e = 0; e < of_elements.size(); ++e)
-    of_elements[e] = lambdas[materials.of(e)] + 2.0 * moduli[materials.of(e)];
+  for (std::size_t e = 0; e < of_elements.size(); ++e) {
+    const double lambda = lambdas[materials.of(e)], mu = moduli[materials.of(e)];
+    of_elements[e] = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+  }
   return of_elements;
 }
 
@@ -152,7 +154,7 @@ void make_forces(const Case& description, Scene& scene, const std::vector<double
                          .element_masses = element_masses,
                          .masses = masses,
                          .cells = scene.mesh.cells,
-                         .wave_moduli = wave_moduli(scene.mesh, scene.materials)};
+                         .young_moduli = young_moduli(scene.mesh, scene.materials)};
   description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
   scene.forces = resolver.all();
   scene.curves = std::move(resolver.curves);

@@ -63,6 +63,7 @@ Touch Body<Real>::touch() const {
     sum.depth = std::max(sum.depth, touch.depth);
     sum.stored += touch.stored;
     sum.dissipated += touch.dissipated;
+    sum.contrary += touch.contrary;
   });
   return sum;
 }

@@ -96,6 +96,12 @@ class Body {
   /// The sums over all obstacles of energies, and the largest depth, at the last evaluation.
   Touch touch() const;
 
+  /// See Loads::slide.
+  void slide(const Rows<Real>& before, Rows<Real>& u) const { loads_.slide(before, u); }
+
+  /// See Loads::fix_contact.
+  void fix_contact(bool fixed) { loads_.fix_contact(fixed); }
+
   /// See Loads::set_contact_stiffness.
   void set_contact_stiffness(Rows<float>& roots) const {
     loads_.set_contact_stiffness(of_all(state_.u), roots);

@@ -44,6 +44,14 @@ constexpr double most_growth = 1.5, most_growth_of_the_last_try = 3.0;
 /// a good start; beyond this growth it is not.
 constexpr double most_extended_growth = 10.0;
 
+/// The nodes that touch obstacles are updated when the norm has fallen to this share. Where that does not
+/// reduce the nodes whose contact is wrong, the next update waits for a tenth of that, until the share is the
+/// least.
+constexpr double updated_share = 0.1, least_updated_share = 1e-3;
+
+/// Further updates do not count as progress.
+constexpr int most_updates = 30;
+
 /// A saddle is left by this change of displacement gradients, doubled repeatedly. Directions whose potentials
 /// differ by less than this share of their fall count as equal; the first is taken.
 constexpr double shortest_leap = 1e-3, hardly_lower = 1e-5;
@@ -77,6 +85,7 @@ void Equilibrium<Real>::start(Effort effort) {
   leaves_saddle_ = false;
   convex_ = true;
   returns_ = 0;
+  body().fix_contact(false);
   begin();
   mixed_.evaluate();
   first_ = mixed_.norm();
@@ -104,6 +113,8 @@ bool Equilibrium<Real>::step() {
 template <class Real>
 void Equilibrium<Real>::begin_acceleration() {
   stage_ = Stage::acceleration;
+  body().fix_contact(true);
+  contact_ = {mixed_.norm(), updated_share};
   acceleration_.clear();
   norms_.clear();
   best_norm_ = mixed_.norm();
@@ -113,6 +124,7 @@ void Equilibrium<Real>::begin_acceleration() {
 
 template <class Real>
 bool Equilibrium<Real>::accelerated() {
+  if (mixed_.norm() < contact_.share * contact_.norm) update_contact();
   const double norm = mixed_.norm();
   if (effort_ == Effort::full && norm < best_norm_) {
     best_norm_ = norm;
@@ -130,6 +142,22 @@ bool Equilibrium<Real>::accelerated() {
     begin_descent();
   }
   return true;
+}
+
+template <class Real>
+void Equilibrium<Real>::update_contact() {
+  const int contrary = body().touch().contrary;
+  if (contrary == 0) return;
+  body().fix_contact(false);
+  mixed_.evaluate();
+  if (stage_ != Stage::acceleration) return;
+  body().fix_contact(true);
+  if (contrary >= contact_.contrary) contact_.share = std::max(0.1 * contact_.share, least_updated_share);
+  contact_ = {mixed_.norm(), contact_.share, contrary, contact_.updates + 1};
+  if (contact_.updates > most_updates) return;
+  progress_ = {contact_.norm};
+  acceleration_.clear();
+  if (is_healthy(body())) mixed_.linearize();
 }
 
 /// Moves to where the steps so far predict the smallest residual, and on by a multigrid cycle; shorter while
@@ -153,13 +181,23 @@ bool Equilibrium<Real>::linearized_step() {
   const double allowed = growth * *std::max_element(norms_.end() - static_cast<long>(recent), norms_.end());
   constexpr int most_trials = 7;
   double share = 1.0, done = 0.0;
+  std::optional<Point> from;  // nodes that slide along obstacles do not return by themselves
+  if (may_touch()) from = {body().state(), pressures()};
   for (int trial = 0; trial < most_trials; ++trial, share *= 0.5) {
+    if (from) {
+      go_to(*from);
+      done = 0.0;
+    }
     mixed_.move(step_, share - done);
     done = share;
     mixed_.evaluate();
     const double next = mixed_.norm();
     if (std::isfinite(next) && next <= allowed) {
       if (share < 1.0) multiply(static_cast<float>(share), step_, blocks());
+      for (std::size_t row = 0; from && row < from->state.u.size(); ++row) {
+        for (std::size_t i = 0; i < 3; ++i)
+          step_.u[row][i] = static_cast<float>(body().state().u[row][i] - from->state.u[row][i]);
+      }
       acceleration_.moved(step_);
       return true;
     }
@@ -170,6 +208,7 @@ bool Equilibrium<Real>::linearized_step() {
 template <class Real>
 void Equilibrium<Real>::begin_multipliers() {
   stage_ = Stage::multipliers;
+  body().fix_contact(false);
   go_to(best_);
   mixed_.evaluate();
   progress_ = {mixed_.norm()};
@@ -224,6 +263,7 @@ template <class Real>
 bool Equilibrium<Real>::leave(const std::vector<MixedVector>& falling, bool slowly) {
   effort_ = Effort::full;
   returns_ = 0;
+  body().fix_contact(false);
   leaves_saddle_ = true;
   convex_ = false;
   using Multipliers = typename MixedBody<Real>::Multipliers;
@@ -284,6 +324,7 @@ void Equilibrium<Real>::go_to(const Point& point) {
 /// Goes to the point of lower potential: the start of the search, or the best since.
 template <class Real>
 void Equilibrium<Real>::go_to_lower() {
+  body().fix_contact(false);
   go_to(potential_at(best_) < potential_at(start_) ? best_ : start_);
   mixed_.evaluate();
 }
@@ -297,6 +338,7 @@ double Equilibrium<Real>::potential_at(const Point& point) {
 
 template <class Real>
 double Equilibrium<Real>::extend(double load, double most) {
+  body().fix_contact(false);
   const Rows<Real> before = body().state().u;
   const double load_before = body().load_factor();
   begin();
@@ -346,6 +388,7 @@ double Equilibrium<Real>::extend(double load, double most) {
   const double gradient = mixed_.multigrid().elements().largest_gradient(x.u);
   const double share = mixed_.is_linear() ? 1.0 : std::min(1.0, most / gradient);
   const double reached = share < 1.0 ? load_before + share * (load - load_before) : load;
+  body().impose(reached);  // where obstacles are, along which it slides
   body().move_to(before);
   mixed_.move(x, share);
   body().impose(reached);

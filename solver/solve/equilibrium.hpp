@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "solve/acceleration.hpp"
@@ -42,6 +43,11 @@ class Equilibrium {
 
   /// Whether there are obstacles, so that motions before they touch do not predict those after it.
   bool may_touch() const { return !contacts_of(body().scene().forces).empty(); }
+
+  /// Evaluates the forces with the nodes that touch obstacles now, if these have changed. Accelerated steps
+  /// keep them fixed until the norm has fallen, so that forces are smooth; an answer must have those that
+  /// touch.
+  void update_contact();
 
   /// The factor by which `change` (m) may be scaled until an element of the current configuration is strained
   /// by `most`; infinite if laws are not known to stiffen.
@@ -110,6 +116,12 @@ class Equilibrium {
     bool take(double norm, const Patience& patience);
   };
 
+  /// The updates of touching nodes since acceleration began.
+  struct ContactUpdates {
+    double norm = 0.0, share = 0.0;  // after the last one, and by which it falls before the next
+    int contrary = std::numeric_limits<int>::max(), updates = 0;
+  };
+
   /// The patience of the descent: a buckling body descends far before its norm falls, and near the answer
   /// slow steps are as good as any.
   static constexpr Patience accelerated_patience{0.75, 12}, patient_patience{0.5, 100},
@@ -135,6 +147,7 @@ class Equilibrium {
   Effort effort_ = Effort::brief;
   Stage stage_ = Stage::acceleration;
   Progress progress_;
+  ContactUpdates contact_;
   Point start_, best_;
   double best_norm_ = 0.0;
   double first_ = 1.0;   // norm

@@ -148,11 +148,31 @@ double Loads<Real>::potential(const Rows<Real>& u) const {
 }
 
 template <class Real>
+void Loads<Real>::slide(const Rows<Real>& before, Rows<Real>& u) const {
+  if (contacts_.empty()) return;
+  const Rows<double> from = loaded(before);
+  Rows<double> to = loaded(u);
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->slide(factors_, by_node(from.data()), memory_.data() + memory_of_[c], by_node(to.data()));
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) u[rows_[k]][i] = static_cast<Real>(to[k][i]);
+  }
+}
+
+template <class Real>
+void Loads<Real>::fix_contact(bool fixed) {
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->fix_contact(fixed, memory_.data() + memory_of_[c]);
+}
+
+template <class Real>
 void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const {
   const Rows<double> there = loaded(u);
   Rows<float> own(rows_.size());
-  for (const auto* contact : contacts_)
-    contact->set_contact_stiffness(factors_, by_node(there.data()), by_node(own.data()));
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    contacts_[c]->set_contact_stiffness(factors_, by_node(there.data()), memory_.data() + memory_of_[c],
+                                        by_node(own.data()));
+  }
   for (std::size_t k = 0; k < rows_.size(); ++k) roots[rows_[k]] = own[k];
 }
 

@@ -32,6 +32,12 @@ class Loads {
   /// BodyForce::add_potential.
   double potential(const Rows<Real>& u) const;
 
+  /// See ContactForce::slide.
+  void slide(const Rows<Real>& before, Rows<Real>& u) const;
+
+  /// See ContactForce::fix_contact.
+  void fix_contact(bool fixed);
+
   /// Sets `roots` (by row) to the stiffness of obstacles; see ContactForce::set_contact_stiffness.
   void set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const;
 

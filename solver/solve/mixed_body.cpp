@@ -201,6 +201,11 @@ void MixedBody<Real>::weigh() {
   const auto& diagonal = multigrid_.elements().relaxation();
   for (std::size_t row = 0; row < diagonal.size(); ++row) {
     for (std::size_t i = 0; i < 3; ++i) weights_.u[row][i] = std::sqrt(diagonal[row][i]);
+    if (contact_.empty()) continue;
+    const Row<float>& s = contact_[row];
+    const float sum = std::abs(s[0]) + std::abs(s[1]) + std::abs(s[2]);
+    for (std::size_t i = 0; i < 3; ++i)
+      weights_.u[row][i] /= std::sqrt(1.0f + diagonal[row][i] * std::abs(s[i]) * sum);
   }
   for_each_element([&](std::size_t e, std::size_t c) {
     weights_.p[c] = static_cast<float>(std::sqrt(moduli_[materials_.of(e)].mu / volume(e)));
@@ -336,6 +341,7 @@ template <class Real>
 void MixedBody<Real>::move(const MixedVector& step, double share) {
   const auto factor = static_cast<Real>(share);
   const float* s = numbers_of(step.u);
+  if (!contact_.empty()) before_ = body_.state().u;
   Real *u = numbers_of(body_.state().u), *increment = numbers_of(body_.state().increment);
   multigrid_.elements().blocks().u.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
@@ -345,7 +351,23 @@ void MixedBody<Real>::move(const MixedVector& step, double share) {
     }
   });
   for_each_element([&](std::size_t e, std::size_t c) { p_[e] += factor * static_cast<Real>(step.p[c]); });
+  slide();
   body_.follow();
+}
+
+/// Moves touching nodes, where they are free, along obstacles.
+template <class Real>
+void MixedBody<Real>::slide() {
+  if (contact_.empty()) return;
+  Rows<Real>&u = body_.state().u, &increment = body_.state().increment;
+  slid_ = u;
+  body_.slide(before_, slid_);
+  for (std::size_t row = 0; row < u.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      u[row][i] += free_[row][i] * (slid_[row][i] - u[row][i]);
+      increment[row][i] = u[row][i] - before_[row][i];
+    }
+  }
 }
 
 template <class Real>

@@ -150,6 +150,7 @@ class MixedBody {
     return static_cast<double>(multigrid_.elements().tangents()[cell(element)].volume);
   }
   void update_multigrid();
+  void slide();
 
   /// The sum over all components of a term of the stiffness (N/m), the displacement (m) and the weighted
   /// force (root of J).
@@ -199,6 +200,7 @@ class MixedBody {
   SaddleMultigrid multigrid_;
   Rows<float> linearized_at_;          // m
   double linearized_penalty_ = 0.0;    // zero before the first time
+  Rows<Real> before_, slid_;           // displacements before and after nodes slide along obstacles
   Rows<float> contact_, contact_now_;  // stiffness of obstacles, linearized and present
   bool linearized_ = false;            // whether the multigrid method belongs to these two
   std::vector<Real> p_;

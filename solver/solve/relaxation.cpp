@@ -252,8 +252,12 @@ class Search {
     return equilibrium_.at_rounding() && (residual < most_residual || equilibrium_.bears_nothing());
   }
 
-  /// Whether the search may end: not with an inverted element, as another equilibrium may be near.
-  bool arrived() { return (near() || (at_rounding() && equilibrium_.bears_nothing())) && is_healthy(body()); }
+  /// Whether the search may end: not with an inverted element, as another equilibrium may be near, and at the
+  /// full load with the nodes that touch obstacles there.
+  bool arrived() {
+    if (load_levels_.full() && near()) equilibrium_.update_contact();
+    return (near() || (at_rounding() && equilibrium_.bears_nothing())) && is_healthy(body());
+  }
 
   bool near() const {
     return load_levels_.full() ? equilibrium_.residual() < tolerance()
