@@ -22,20 +22,18 @@ void for_each_parameter(AnyLaw& any_law, const Visit& visit) {
       any_law);
 }
 
-/// A difference formula of fourth order: sum_k weight_k f(x + offset_k h) / h.
+/// A difference formula of second order: sum_k weight_k f(x + offset_k h) / h.
 struct Term {
   double offset, weight;
 };
-constexpr std::array<Term, 4> central{
-    {{-2.0, 1.0 / 12.0}, {-1.0, -2.0 / 3.0}, {1.0, 2.0 / 3.0}, {2.0, -1.0 / 12.0}}};
-constexpr std::array<Term, 5> forward{
-    {{0.0, -25.0 / 12.0}, {1.0, 4.0}, {2.0, -3.0}, {3.0, 4.0 / 3.0}, {4.0, -0.25}}};
+constexpr std::array<Term, 2> central{{{-1.0, -0.5}, {1.0, 0.5}}};
+constexpr std::array<Term, 3> forward{{{0.0, -1.5}, {1.0, 2.0}, {2.0, -0.5}}};
 
-/// How far parameters are moved, over the scale on which laws vary with them: its fourth power is below
-/// rounding.
-constexpr double share_of_scale = 1e-3;
+/// How far parameters are moved, over the scale on which laws vary with them. Its square is the error; a
+/// shorter step would lose parameters that act on small strains only in the rounding of the others' forces.
+constexpr double share_of_scale = 1e-4;
 
-/// A step of a parameter, and whether it must go upwards, because the parameter is the least allowed.
+/// A step of a parameter, and whether it must go upwards, because the parameter is near the least allowed.
 struct Step {
   double length;
   bool upwards;
@@ -43,15 +41,13 @@ struct Step {
 
 template <class P>
 Step step_of(const P& parameter, double value, double shear_modulus) {
+  constexpr double near = 0.1;
   const Range& range = parameter.range;
   const double below = value - range.low, above = range.high - value;
-  if (below == 0.0) {
-    const double unit = parameter.unit == "Pa" ? shear_modulus : 1.0;
-    return {share_of_scale * std::min(unit, above), true};
-  }
+  const double unit = parameter.unit == "Pa" ? shear_modulus : 1.0;
+  if (!range.low_open && below < near * unit) return {share_of_scale * std::min(unit, above), true};
   const double scale = std::min(below, above);
-  if (std::isfinite(scale)) return {share_of_scale * scale, false};
-  return {share_of_scale * std::max(std::abs(value), parameter.unit == "Pa" ? shear_modulus : 1.0), false};
+  return {share_of_scale * (std::isfinite(scale) ? scale : std::max(std::abs(value), unit)), false};
 }
 
 double shear_modulus(const AnyLaw& any_law) {

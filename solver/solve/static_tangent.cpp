@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "assembly/method_entry.hpp"
@@ -15,10 +16,10 @@ namespace {
 
 /// The exact residual, over its initial value, at which a problem is solved, and the one that is accepted if
 /// rounding allows no less.
-constexpr double solved = 1e-10, acceptable = 1e-7;
+constexpr double solved = 1e-9, acceptable = 1e-7;
 
 /// A correction reduces the residual to about this share, more would be lost in the differences of forces.
-constexpr double share_left = 1e-3;
+constexpr double share_left = 1e-4;
 
 constexpr int most_corrections = 30, most_cycles = 120, most_products = 2000;
 
@@ -78,6 +79,7 @@ void StaticTangent::add_stiffness_of_loads(const Rows<double>& a, Rows<double>& 
 
 NodalField StaticTangent::product(const NodalField& a) const {
   NodalField forces(a.size());
+  if (std::ranges::all_of(a, [](const Vector& row) { return row == Vector{}; })) return forces;
   for_each_element_slope(model_, model_.scene().materials, levels_, u_, a,
                          [&](std::size_t e, const ElementSlopes& f) {
                            const Hexahedron& cell = model_.scene().mesh.cells[e];
