@@ -115,3 +115,132 @@ def test_every_method_with_a_potential(method):
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law(law, method):
     compare_parameters(law, method)
+
+
+KINDS = {
+    "springs and a rotation": [
+        sg.Support(set="side", stiffness=2e4),
+        sg.Rotation(set="end", axis="z", angle=20, center=(0.05, 0.05, 0)),
+    ],
+    "hanging nodes and weight": [sg.Refine(elements="low"), sg.Gravity(value=(0, -2, 0))],
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("method", ["tl-perturbation", "t4-anp", "linear"])
+def test_loads_imposed_displacements_and_elements(kind, method):
+    """Of forces on a node and an element's stiffness one each; imposed displacements by a driven set."""
+    materials = [sample("NeoHookean", np.random.default_rng(k)) for k in (1, 2)]
+    named = SETS | {"one": {"x": [0.1, 0.1], "y": [0.1, 0.1], "z": [0.15, 0.15]}}
+    if "rotation" in kind:
+        named["end"] = named.pop("head")
+
+    def made(force=0.0, moved=0.0, stiffer=0.0):
+        loads = [
+            sg.Displacement(set="base", value=(moved, 0, 0)),
+            sg.Force(set="side", total=(0.2, 0.3, 0.1)),
+            sg.Force(set="one", total=(0.05, 0.05 + force, 0), on="nodes"),
+            sg.Relaxation(tolerance=1e-12),
+            *KINDS[kind],
+        ]
+        low = {"elements": "low"}
+        laws = [sg.NeoHookean(**materials[0]), sg.NeoHookean(**materials[1] | low)]
+        modulus = 1500 * (1 + stiffer)  # never that of others, with which t4-anp would average it
+        laws.append(sg.NeoHookean(**materials[0] | {"young_modulus": modulus, "elements": "third"}))
+        rules = {"low": {"z": [0, 0.1]}, "third": {"x": [0, 0.05], "y": [0.05, 0.1], "z": [0.15, 0.2]}}
+        return sg.Body(BOX, laws, loads, sets=named, element_sets=rules)
+
+    solution = made().solve(name=method)
+    rng = np.random.default_rng(5)
+    of_u, of_R = rng.standard_normal(solution.displacement.shape), rng.standard_normal(3) * 1e-2
+
+    def J(**change):
+        answer = made(**change).solve(name=method)
+        return (of_u * answer.displacement).sum() + of_R @ answer.reactions["base"]
+
+    found = solution.gradient(of_u, {"base": of_R})
+    one, base = solution.sets["one"], solution.sets["base"]
+    third = solution.element_sets["third"]
+    assert len(one) == 1 and len(third) == 1
+    pairs = {
+        "force": (found.forces[one[0], 1], 1e-2),
+        "moved": (found.imposed[base, 0].sum(), 1e-3),
+        "stiffer": (found.stiffness[third[0]], 1e-2),
+    }
+    for name, (derivative, step) in pairs.items():
+        own = difference(lambda x: J(**{name: x}), step)
+        assert derivative == pytest.approx(own, rel=1e-6), name
+    free = np.ones(len(of_u), bool)
+    free[np.concatenate([solution.sets[name] for name in named if name in ("base", "end", "head")])] = False
+    assert not found.imposed[free].any() and found.imposed[base].all()
+    # Forward sensitivities are the same derivatives.
+    force, imposed = np.zeros_like(of_u), np.zeros_like(of_u)
+    force[one[0], 1] = 1
+    imposed[base, 0] = 1
+    only_u = solution.gradient(of_u)
+    along = {
+        "force": (solution.sensitivity(forces=force), only_u.forces[one[0], 1]),
+        "imposed": (solution.sensitivity(imposed=imposed), only_u.imposed[base, 0].sum()),
+        "modulus": (
+            solution.sensitivity([{}, {"young_modulus": 1.0}, {}]),
+            only_u.materials[1]["young_modulus"],
+        ),
+    }
+    for name, (du, derivative) in along.items():
+        assert (of_u * du).sum() == pytest.approx(derivative, rel=1e-7), name
+    assert np.allclose(along["imposed"][0][base], [1, 0, 0])
+
+
+def test_wrong_input_and_answers_without_derivatives():
+    """Exceptions name the argument and the rule, or the reason."""
+    materials = [sample("NeoHookean", np.random.default_rng(k)) for k in (1, 2)]
+    solution = body("NeoHookean", materials).solve()
+    n = len(solution.points)
+    for arguments, error, words in [
+        ({"displacement": np.zeros((n, 2))}, sg.InputError, rf"displacement must have the shape \({n}, 3\)"),
+        ({"displacement": np.full((n, 3), np.nan)}, sg.InputError, "displacement must be finite"),
+        ({"displacement": "up"}, TypeError, "displacement must be an array of numbers"),
+        ({"reactions": {"side": (1, 0, 0)}}, sg.InputError, "'side' is no driven set; allowed: base, head"),
+        ({"reactions": {"head": (np.inf, 0, 0)}}, sg.InputError, "reactions: 'head' must be finite"),
+    ]:
+        with pytest.raises(error, match=words):
+            solution.gradient(**arguments)
+    for arguments, words in [
+        ({"materials": [{}]}, "1 were given; it must be one for each of the 2 of the body"),
+        ({"materials": [{}, {"mu": 1.0}]}, "'mu' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson"),
+        ({"materials": [{}, {"young_modulus": np.nan}]}, "'young_modulus' must be finite"),
+        ({"forces": np.zeros(3)}, "forces must have the shape"),
+        ({"imposed": np.zeros((1, 3))}, "imposed must have the shape"),
+    ]:
+        with pytest.raises(sg.InputError, match=words):
+            solution.sensitivity(**arguments)
+    nothing = solution.gradient(np.zeros((n, 3)))
+    assert not nothing.forces.any() and nothing.materials[0]["young_modulus"] == 0
+    wall = sg.Obstacle(name="wall", set="side", shape="plane", point=(0.2, 0, 0), normal=(-1, 0, 0))
+    for table, method, words in [
+        (sg.Pressure(set="side", value=10), {}, r"\[\[pressure\]\] is not supported, for .*potential"),
+        (wall, {}, r"\[\[obstacle\]\] is not supported"),
+        (sg.Dynamics(duration=0.01), {}, "the answer is a motion; allowed: a static answer"),
+        (sg.Relaxation(tolerance=1e-4), {"precision": "float"}, "precision = 'float' is too coarse"),
+    ]:
+        made = body("NeoHookean", materials)
+        made.tables = [t for t in made.tables if type(t) is not type(table) and type(t) is not sg.Relaxation]
+        made.tables.append(table)
+        with pytest.raises(sg.InputError, match=words):
+            made.solve(**method).gradient()
+
+
+def test_an_unstable_answer_has_no_derivatives():
+    """A compressed column that stays straight, of a law whose stability the search does not decide."""
+    law = sg.StVenantKirchhoff(young_modulus=3e3, poisson_ratio=0.3, density=1000)
+    sets = {"base": {"z": [0, 0]}, "head": {"z": [0.2, 0.2]}}
+
+    def column(down):
+        loads = [sg.Displacement(set="base", value=(0, 0, 0)), sg.Displacement(set="head", value=(0, 0, -down))]
+        return sg.Body(sg.Box(size=(0.02, 0.02, 0.2), elements=(2, 2, 20)), law, loads, sets=sets)
+
+    sideways = np.zeros((9 * 21, 3))
+    sideways[:, 0] = 1
+    assert column(1e-4).solve().gradient(sideways).forces[:, 0].sum() > 0
+    with pytest.raises(sg.ComputationError, match="unstable|not solved"):
+        column(0.01).solve().gradient(sideways)
