@@ -1,10 +1,12 @@
 """Derivatives of static answers against differences of the answers themselves."""
 
 import ast
+import re
 import zlib
 
 import numpy as np
 import pytest
+from command_line import ROOT
 
 import sandglass as sg
 
@@ -34,7 +36,7 @@ def scale(ends, unit, value):
 
 
 def sample(law, rng):
-    """Parameters of a law, for any declaration: moduli of 1 to 2 kPa, bulk moduli of ten times that."""
+    """Parameters of any declared law: moduli of 1 to 2 kPa, bulk moduli of ten times that."""
     parameters = {"density": 1000.0}
     if "fibre_direction" in getattr(sg, law)._keys:
         parameters |= {"fibre_direction": [1, 0, 1], "sheet_direction": [0, 1, 0]}
@@ -96,7 +98,6 @@ def compare_parameters(law, method):
         error = abs(found[m][name] - own[m, name])
         allowed = 1e-6 * abs(own[m, name]) + REST * largest / scales[m, name]
         assert error <= allowed, (m, name, found[m][name], own[m, name])
-    return solution, found
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -111,10 +112,12 @@ def test_every_method_with_a_potential(method):
     assert caught.type in (sg.InputError, sg.ComputationError)
 
 
-@pytest.mark.parametrize("method", ["tl-perturbation", "tl-mean-dilatation", "tl-enhanced"])
 @pytest.mark.parametrize("law", LAWS)
-def test_every_law(law, method):
-    compare_parameters(law, method)
+def test_every_law(law):
+    compare_parameters(law, "tl-perturbation")
+    if not law.startswith("Viscoelastic"):
+        compare_parameters(law, "tl-mean-dilatation")
+        compare_parameters(law, "tl-enhanced")
 
 
 KINDS = {
@@ -129,7 +132,7 @@ KINDS = {
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("method", ["tl-perturbation", "t4-anp", "linear"])
 def test_loads_imposed_displacements_and_elements(kind, method):
-    """Of forces on a node and an element's stiffness one each; imposed displacements by a driven set."""
+    """A force on a node, an element's stiffness, and the displacement of a driven set."""
     materials = [sample("NeoHookean", np.random.default_rng(k)) for k in (1, 2)]
     named = SETS | {"one": {"x": [0.1, 0.1], "y": [0.1, 0.1], "z": [0.15, 0.15]}}
     if "rotation" in kind:
@@ -147,7 +150,10 @@ def test_loads_imposed_displacements_and_elements(kind, method):
         laws = [sg.NeoHookean(**materials[0]), sg.NeoHookean(**materials[1] | low)]
         modulus = 1500 * (1 + stiffer)  # never that of others, with which t4-anp would average it
         laws.append(sg.NeoHookean(**materials[0] | {"young_modulus": modulus, "elements": "third"}))
-        rules = {"low": {"z": [0, 0.1]}, "third": {"x": [0, 0.05], "y": [0.05, 0.1], "z": [0.15, 0.2]}}
+        rules = {
+            "low": {"z": [0, 0.1]},
+            "third": {"x": [0, 0.05], "y": [0.05, 0.1], "z": [0.15, 0.2]},
+        }
         return sg.Body(BOX, laws, loads, sets=named, element_sets=rules)
 
     solution = made().solve(name=method)
@@ -171,7 +177,9 @@ def test_loads_imposed_displacements_and_elements(kind, method):
         own = difference(lambda x: J(**{name: x}), step)
         assert derivative == pytest.approx(own, rel=1e-6), name
     free = np.ones(len(of_u), bool)
-    free[np.concatenate([solution.sets[name] for name in named if name in ("base", "end", "head")])] = False
+    free[
+        np.concatenate([solution.sets[name] for name in named if name in ("base", "end", "head")])
+    ] = False
     assert not found.imposed[free].any() and found.imposed[base].all()
     # Forward sensitivities are the same derivatives.
     force, imposed = np.zeros_like(of_u), np.zeros_like(of_u)
@@ -197,17 +205,32 @@ def test_wrong_input_and_answers_without_derivatives():
     solution = body("NeoHookean", materials).solve()
     n = len(solution.points)
     for arguments, error, words in [
-        ({"displacement": np.zeros((n, 2))}, sg.InputError, rf"displacement must have the shape \({n}, 3\)"),
+        (
+            {"displacement": np.zeros((n, 2))},
+            sg.InputError,
+            rf"displacement must have the shape \({n}, 3\)",
+        ),
         ({"displacement": np.full((n, 3), np.nan)}, sg.InputError, "displacement must be finite"),
         ({"displacement": "up"}, TypeError, "displacement must be an array of numbers"),
-        ({"reactions": {"side": (1, 0, 0)}}, sg.InputError, "'side' is no driven set; allowed: base, head"),
-        ({"reactions": {"head": (np.inf, 0, 0)}}, sg.InputError, "reactions: 'head' must be finite"),
+        (
+            {"reactions": {"side": (1, 0, 0)}},
+            sg.InputError,
+            "'side' is no driven set; allowed: base, head",
+        ),
+        (
+            {"reactions": {"head": (np.inf, 0, 0)}},
+            sg.InputError,
+            "reactions: 'head' must be finite",
+        ),
     ]:
         with pytest.raises(error, match=words):
             solution.gradient(**arguments)
     for arguments, words in [
         ({"materials": [{}]}, "1 were given; it must be one for each of the 2 of the body"),
-        ({"materials": [{}, {"mu": 1.0}]}, "'mu' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson"),
+        (
+            {"materials": [{}, {"mu": 1.0}]},
+            "'mu' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson",
+        ),
         ({"materials": [{}, {"young_modulus": np.nan}]}, "'young_modulus' must be finite"),
         ({"forces": np.zeros(3)}, "forces must have the shape"),
         ({"imposed": np.zeros((1, 3))}, "imposed must have the shape"),
@@ -218,25 +241,38 @@ def test_wrong_input_and_answers_without_derivatives():
     assert not nothing.forces.any() and nothing.materials[0]["young_modulus"] == 0
     wall = sg.Obstacle(name="wall", set="side", shape="plane", point=(0.2, 0, 0), normal=(-1, 0, 0))
     for table, method, words in [
-        (sg.Pressure(set="side", value=10), {}, r"\[\[pressure\]\] is not supported, for .*potential"),
+        (
+            sg.Pressure(set="side", value=10),
+            {},
+            r"\[\[pressure\]\] is not supported, for .*potential",
+        ),
         (wall, {}, r"\[\[obstacle\]\] is not supported"),
         (sg.Dynamics(duration=0.01), {}, "the answer is a motion; allowed: a static answer"),
-        (sg.Relaxation(tolerance=1e-4), {"precision": "float"}, "precision = 'float' is too coarse"),
+        (
+            sg.Relaxation(tolerance=1e-4),
+            {"precision": "float"},
+            "precision = 'float' is too coarse",
+        ),
     ]:
         made = body("NeoHookean", materials)
-        made.tables = [t for t in made.tables if type(t) is not type(table) and type(t) is not sg.Relaxation]
+        made.tables = [
+            t for t in made.tables if type(t) is not type(table) and type(t) is not sg.Relaxation
+        ]
         made.tables.append(table)
         with pytest.raises(sg.InputError, match=words):
             made.solve(**method).gradient()
 
 
 def test_an_unstable_answer_has_no_derivatives():
-    """A compressed column that stays straight, of a law whose stability the search does not decide."""
+    """A compressed, straight column of a law whose stability the search does not decide."""
     law = sg.StVenantKirchhoff(young_modulus=3e3, poisson_ratio=0.3, density=1000)
     sets = {"base": {"z": [0, 0]}, "head": {"z": [0.2, 0.2]}}
 
     def column(down):
-        loads = [sg.Displacement(set="base", value=(0, 0, 0)), sg.Displacement(set="head", value=(0, 0, -down))]
+        loads = [
+            sg.Displacement(set="base", value=(0, 0, 0)),
+            sg.Displacement(set="head", value=(0, 0, -down)),
+        ]
         return sg.Body(sg.Box(size=(0.02, 0.02, 0.2), elements=(2, 2, 20)), law, loads, sets=sets)
 
     sideways = np.zeros((9 * 21, 3))
@@ -244,3 +280,13 @@ def test_an_unstable_answer_has_no_derivatives():
     assert column(1e-4).solve().gradient(sideways).forces[:, 0].sum() > 0
     with pytest.raises(sg.ComputationError, match="unstable|not solved"):
         column(0.01).solve().gradient(sideways)
+
+
+def test_the_readme_identifies_two_moduli():
+    """Exactly those with which its displacements were made: the tolerance of the search is 1e-8."""
+    code = re.findall(r"```python\n(.*?)```", (ROOT / "python/README.md").read_text(), re.DOTALL)[1]
+    found = {}
+    exec(compile(code, "README.md", "exec"), found)
+    assert np.allclose(found["moduli"], [12e3, 30e3], rtol=1e-6)
+    start = found["body"]([20e3, 20e3]).solve().displacement
+    assert np.abs(start - found["measured"]).max() > 0.1 * np.abs(start).max()
