@@ -265,10 +265,9 @@ void add_answers(py::module_& m) {
       .def(
           "gradient",
           [](const Answer& answer, const py::object& displacements,
-             const std::map<std::string, Vector>& reactions) {
-            return answer.derivatives().gradient(displacements, reactions);
-          },
-          "displacements"_a, "reactions"_a,
+             const std::map<std::string, Vector>& reactions,
+             bool points) { return answer.derivatives().gradient(displacements, reactions, points); },
+          "displacements"_a, "reactions"_a, "points"_a,
           "The derivatives of a scalar by everything; see sandglass.Solution.")
       .def(
           "sensitivity",

@@ -19,11 +19,11 @@ namespace {
 NodalField nodal_field(const char* name, const py::object& given, std::size_t nodes) {
   if (given.is_none()) return {};
   using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  const auto array = Doubles::ensure(given);
-  if (!array) {
-    PyErr_Clear();
+  const py::array any = py::array::ensure(given);
+  if (!any) PyErr_Clear();
+  if (!any || std::string_view("iuf").find(any.dtype().kind()) == std::string_view::npos)
     throw py::type_error(std::string(name) + " must be an array of numbers");
-  }
+  const Doubles array(any);
   const bool fits =
       array.ndim() == 2 && array.shape(1) == 3 && array.shape(0) == static_cast<py::ssize_t>(nodes);
   if (!fits) {
@@ -56,13 +56,14 @@ auto Derivatives::with_tangent(const Use& use) {
 }
 
 py::dict Derivatives::gradient(const py::object& displacements,
-                               const std::map<std::string, Vector>& reactions) {
+                               const std::map<std::string, Vector>& reactions, bool points) {
   const std::size_t nodes = scene().mesh.points.size();
   NodalField of_u = nodal_field("displacement", displacements, nodes);
   of_u.resize(nodes);
   const NodalField of_R = of_reactions(reactions);
-  const Gradient found =
-      with_tangent([&](StaticTangent& tangent) { return sandglass::gradient(tangent, of_u, of_R); });
+  const Gradient found = with_tangent([&](StaticTangent& tangent) {
+    return sandglass::gradient(tangent, of_u, of_R, points ? Shape::varies : Shape::constant);
+  });
   py::list materials;
   for (std::size_t m = 0; m < found.parameters.size(); ++m) {
     const auto names = parameter_names(scene().materials.list[m].law);
@@ -75,6 +76,7 @@ py::dict Derivatives::gradient(const py::object& displacements,
   all["stiffness"] = numbers(found.scales);
   all["forces"] = field(found.forces);
   all["imposed"] = field(found.imposed);
+  all["points"] = points ? py::object(field(found.points)) : py::none();
   return all;
 }
 

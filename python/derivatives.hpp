@@ -21,9 +21,10 @@ class Derivatives {
   Derivatives(const Model& model, Relaxation answer, std::vector<double> levels)
       : model_(model), answer_(std::move(answer)), levels_(std::move(levels)) {}
 
-  /// The derivatives of a scalar J with the derivatives dJ/du (n, 3) or None, and dJ/dR for driven sets.
+  /// The derivatives of a scalar J with the derivatives dJ/du (n, 3) or None, and dJ/dR for driven sets;
+  /// those by the positions of nodes only with `points`.
   pybind11::dict gradient(const pybind11::object& displacements,
-                          const std::map<std::string, Vector>& reactions);
+                          const std::map<std::string, Vector>& reactions, bool points);
 
   /// The derivative of the displacements along a change of the parameters of each material, of nodal forces
   /// and of imposed displacements, arrays (n, 3) or None.

@@ -199,6 +199,47 @@ def test_loads_imposed_displacements_and_elements(kind, method):
     assert np.allclose(along["imposed"][0][base], [1, 0, 0])
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_positions_of_nodes(method):
+    """Of nodes inside, on the surface and where the body is held, with distorted elements."""
+    if method in ("tl-none", "ul-viscous") or method.startswith("ul-"):
+        return  # no derivatives at all
+    law = sg.NeoHookean(**sample("NeoHookean", np.random.default_rng(3)))
+    grid = sg.Body(BOX, law, sets=SETS).mesh
+    rng = np.random.default_rng(4)
+    points = grid.points + 0.004 * rng.standard_normal(grid.points.shape)
+    sets = {
+        name: np.flatnonzero(np.isclose(grid.points[:, 2], z))
+        for name, z in [("base", 0), ("head", 0.2)]
+    }
+
+    def made(X):
+        loads = [
+            sg.Displacement(set="base", value=(0, 0, 0)),
+            sg.Force(set="head", total=(0.3, 0.2, 0.5), on="nodes"),
+            sg.Relaxation(tolerance=1e-12),
+        ]
+        return sg.Body(sg.Mesh(X, grid.cells, sets), law, loads)
+
+    solution = made(points).solve(name=method)
+    of_u, of_R = rng.standard_normal(points.shape), rng.standard_normal(3)
+
+    def J(X):
+        answer = made(X).solve(name=method)
+        return (of_u * answer.displacement).sum() + of_R @ answer.reactions["base"]
+
+    if method == "t4-anp":
+        with pytest.raises(sg.InputError, match="'t4-anp' has none by positions"):
+            solution.gradient(of_u, points=True)
+        return
+    assert solution.gradient(of_u).points is None
+    found = solution.gradient(of_u, {"base": of_R}, points=True).points
+    for _ in range(3):
+        along = rng.standard_normal(points.shape)
+        own = difference(lambda x: J(points + x * along), 1e-5)
+        assert (found * along).sum() == pytest.approx(own, rel=1e-6)
+
+
 def test_wrong_input_and_answers_without_derivatives():
     """Exceptions name the argument and the rule, or the reason."""
     materials = [sample("NeoHookean", np.random.default_rng(k)) for k in (1, 2)]

@@ -105,19 +105,19 @@ std::vector<std::vector<double>> by_parameters(const StaticTangent& tangent, con
       for (std::size_t m = 0; m < steps.size(); ++m) any = any || moves(m);
       if (!any) continue;
       const std::span<const Term> formula = upwards ? std::span<const Term>(forward) : central;
-      for (const auto& [offset, weight] : formula) {
+      for (const Term& term : formula) {
         Materials materials = own;
         for (std::size_t m = 0; m < steps.size(); ++m) {
           if (!moves(m)) continue;
           std::vector<double> by(steps[m].size(), 0.0);
-          by[k] = offset * steps[m][k].length;
+          by[k] = term.offset * steps[m][k].length;
           materials.list[m].law = moved(own.list[m].law, by);
         }
         for_each_force(tangent, materials, [&](std::size_t e, const ElementSlopes& f) {
           const std::size_t m = own.of(e);
           if (!moves(m)) return;
           derivatives[m][k] +=
-              weight / steps[m][k].length * power(tangent.model().scene().mesh.cells[e], f, v);
+              term.weight / steps[m][k].length * power(tangent.model().scene().mesh.cells[e], f, v);
         });
       }
     }
@@ -141,17 +141,17 @@ void add_change_of_forces(const StaticTangent& tangent, const std::vector<std::v
   }
   if (!std::isfinite(length)) return;
   const std::span<const Term> formula = upwards ? std::span<const Term>(forward) : central;
-  for (const auto& [offset, weight] : formula) {
+  for (const Term& term : formula) {
     Materials materials = own;
     for (std::size_t m = 0; m < parameters.size(); ++m) {
       std::vector<double> by = parameters[m];
-      for (double& each : by) each *= offset * length;
+      for (double& each : by) each *= term.offset * length;
       materials.list[m].law = moved(own.list[m].law, by);
     }
     for_each_force(tangent, materials, [&](std::size_t e, const ElementSlopes& f) {
       const Hexahedron& cell = tangent.model().scene().mesh.cells[e];
       for (int I = 0; I < 8; ++I) {
-        for (int i = 0; i < 3; ++i) forces[at(cell[at(I)])][at(i)] += weight / length * f(I, i).value;
+        for (int i = 0; i < 3; ++i) forces[at(cell[at(I)])][at(i)] += term.weight / length * f(I, i).value;
       }
     });
   }
@@ -214,8 +214,8 @@ void require_differentiable(const Model& model, const Relaxation& answer) {
     throw ComputationError("derivatives: " + stability_text(answer));
 }
 
-Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements,
-                  const NodalField& of_reactions) {
+Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, const NodalField& of_reactions,
+                  Shape shape) {
   // With v = dJ/dR on constrained components, and K v = -dJ/du on the others, dJ = v . (df_int - df).
   NodalField v = tangent.followed(constrained(tangent, of_reactions));
   NodalField b = tangent.handed_on(of_displacements);
@@ -236,6 +236,15 @@ Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements,
     found.scales[e] = power(scene.mesh.cells[e], f, v);
   });
   found.parameters = by_parameters(tangent, v);
+  if (shape == Shape::constant) return found;
+  found.points = zeros(tangent);
+  for_each_shape_derivative(tangent.model(), tangent.levels(), tangent.displacements(), v,
+                            [&](std::size_t e, const NodalVectors<double>& own) {
+                              for (int I = 0; I < 8; ++I) {
+                                Vector& sum = found.points[at(scene.mesh.cells[e][at(I)])];
+                                for (int i = 0; i < 3; ++i) sum[at(i)] += own(I, i);
+                              }
+                            });
   return found;
 }
 

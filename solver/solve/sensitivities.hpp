@@ -19,15 +19,21 @@ struct Gradient {
   std::vector<double> scales;  ///< by a factor of the stiffness of each element, at the factor one
   NodalField forces;           ///< by forces on nodes, 1/N
   NodalField imposed;          ///< by imposed displacements, 1/m; zero on components that are free
+  NodalField points;           ///< by reference positions of nodes, 1/m; empty if the shape is constant
 };
+
+/// Whether derivatives by the reference positions of nodes are wanted.
+enum class Shape { constant, varies };
 
 /// Throws InputError, or ComputationError, with the reason why the derivatives of a static answer of a model
 /// are not defined or not available.
 void require_differentiable(const Model& model, const Relaxation& answer);
 
 /// The derivatives of J by everything that it depends on, from one adjoint problem. `of_displacements` is
-/// dJ/du (1/m) at all nodes, `of_reactions` dJ/dR (1/N) for the forces R that hold or drive nodes.
-Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, const NodalField& of_reactions);
+/// dJ/du (1/m) at all nodes, `of_reactions` dJ/dR (1/N) for the forces R that hold or drive nodes. Positions
+/// of nodes move no forces of loads, springs or imposed displacements.
+Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, const NodalField& of_reactions,
+                  Shape shape = Shape::constant);
 
 /// The derivative of the displacements (m) along a perturbation, from one linear problem.
 NodalField change_of_displacements(StaticTangent& tangent, const Perturbation& perturbation);

@@ -25,5 +25,9 @@ class Gradient:
     imposed: np.ndarray
     """By the imposed displacement of each node, 1/m; (n, 3). Zero on components that are free."""
 
+    points: np.ndarray | None
+    """By the undeformed position of each node, 1/m; (n, 3). The forces of loads on nodes, springs,
+    imposed displacements and fibres count as constant. None without `points=True`."""
+
     def __repr__(self):
         return f"<sg.Gradient: materials {list(self.materials)}>"
