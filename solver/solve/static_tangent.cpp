@@ -23,8 +23,12 @@ constexpr double share_left = 1e-4;
 
 constexpr int most_corrections = 30, most_cycles = 120, most_products = 2000;
 
-/// The change of displacement gradients in differences of forces, the cube root of double precision.
-constexpr double change = 6e-6;
+/// The change of displacement gradients in differences of forces. In nearly incompressible bodies the forces
+/// curve as lambda / mu times this, and lambda / mu times double precision, over this, is their rounding.
+constexpr double change = 2e-7;
+
+/// The largest displacement over the size of the body in differences of loads, which are almost linear.
+constexpr double change_for_loads = 1e-5;
 
 /// The share of the smoother's diagonal that is added to the cycle, as in a Newton step.
 constexpr float added_diagonal = 0.5F;
@@ -63,7 +67,7 @@ void StaticTangent::add_stiffness_of_loads(const Rows<double>& a, Rows<double>& 
   loads.set(1.0, 1.0);
   double diameter = 0.0;
   for (const Vector& X : scene.mesh.points) diameter = std::max(diameter, distance(X, scene.mesh.points[0]));
-  const double length = change * diameter / largest;
+  const double length = change_for_loads * diameter / largest;
   State<double> state = state_;
   for (const double side : {1.0, -1.0}) {
     for (std::size_t row = 0; row < a.size(); ++row) {

@@ -102,14 +102,16 @@ class Solution:
         """The derivatives of a scalar J of this static answer by all that it depends on.
 
         `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to dJ/dR, (3,).
-        `points`: whether also by the undeformed positions of nodes, which takes longer. One adjoint problem for all parameters together, which costs about as much as `solve`. Dead
+        `points`: whether also by the undeformed positions of nodes, which takes longer. One
+        adjoint problem for all parameters together, which costs about as much as `solve`. Dead
         loads and springs may act. Levels of adaptive elements count as constant.
 
         Returns an `sg.Gradient`. Raises InputError where forces have no potential (Updated
         Lagrangian methods, pressures), with obstacles, in single precision and for motions;
         ComputationError for an answer that is not stable.
         """
-        found = self._answer.gradient(displacement, {} if reactions is None else reactions, points)
+        reactions = {} if reactions is None else reactions
+        found = self._answer.gradient(displacement, reactions, points)
         return Gradient(**{key: _fixed(value) for key, value in found.items()})
 
     def sensitivity(self, materials=None, *, forces=None, imposed=None):
