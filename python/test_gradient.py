@@ -199,6 +199,24 @@ def test_loads_imposed_displacements_and_elements(kind, method):
     assert np.allclose(along["imposed"][0][base], [1, 0, 0])
 
 
+def test_a_parameter_at_the_end_of_its_range():
+    """Zero may not be passed, so both differences go upwards."""
+    rng = np.random.default_rng(6)
+    materials = [sample("MooneyRivlin", rng) | {"c01": 0.0}, sample("MooneyRivlin", rng)]
+    solution = body("MooneyRivlin", materials).solve()
+    of_u, of_R, J = scalar(solution.displacement.shape)
+
+    def answer(c01):
+        return J(body("MooneyRivlin", [materials[0] | {"c01": c01}, materials[1]]).solve())
+
+    weights, step = np.array([-25, 48, -36, 16, -3]) / 12, 0.5
+    own = sum(w * answer(k * step) for k, w in enumerate(weights)) / step
+    assert solution.gradient(of_u, of_R).materials[0]["c01"] == pytest.approx(own, rel=1e-6)
+    du = solution.sensitivity([{"c01": 1.0}, {}])
+    found = solution.gradient(of_u).materials[0]["c01"]
+    assert (of_u * du).sum() == pytest.approx(found, rel=1e-7)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_positions_of_nodes(method):
     """Of nodes inside, on the surface and where the body is held, with distorted elements."""
