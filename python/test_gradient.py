@@ -75,10 +75,12 @@ def difference(answer, step):
     return (8 * near - far) / (12 * step)
 
 
-def compare_parameters(law, method):
+def compare_parameters(law, name, **method):
+    """`name` and further arguments of `Body.solve`."""
+    method = {"name": name} | method
     rng = np.random.default_rng(zlib.crc32(law.encode()))
     materials = [sample(law, rng), sample(law, rng)]
-    solution = body(law, materials).solve(name=method)
+    solution = body(law, materials).solve(**method)
     of_u, of_R, J = scalar(solution.displacement.shape)
     found = solution.gradient(of_u, of_R).materials
     own, scales = {}, {}
@@ -89,7 +91,7 @@ def compare_parameters(law, method):
             def answer(change):
                 moved = [dict(each) for each in materials]
                 moved[m][name] += change
-                return J(body(law, moved).solve(name=method))
+                return J(body(law, moved).solve(**method))
 
             scales[m, name] = scale(ends, unit, material[name])
             own[m, name] = difference(answer, SHARE * scales[m, name])
@@ -197,6 +199,28 @@ def test_loads_imposed_displacements_and_elements(kind, method):
     for name, (du, derivative) in along.items():
         assert (of_u * du).sum() == pytest.approx(derivative, rel=1e-7), name
     assert np.allclose(along["imposed"][0][base], [1, 0, 0])
+
+
+def test_a_kappa_that_was_chosen():
+    compare_parameters("NeoHookean", "tl-perturbation", kappa=0.2, kappa_modulus="shear")
+
+
+def test_like_materials_share_averages():
+    """Elements that average over nodes do so within like materials; derivatives keep that."""
+    material = sample("NeoHookean", np.random.default_rng(7))
+    solution = body("NeoHookean", [material] * 2).solve(name="t4-anp")
+    of_u, of_R, J = scalar(solution.displacement.shape)
+    found = [own["young_modulus"] for own in solution.gradient(of_u).materials]
+    for m in range(2):
+        du = solution.sensitivity([{"young_modulus": float(n == m)} for n in range(2)])
+        assert (of_u * du).sum() == pytest.approx(found[m], rel=1e-7)
+
+    def answer(change):
+        stiffer = material | {"young_modulus": material["young_modulus"] + change}
+        moved = body("NeoHookean", [stiffer] * 2).solve(name="t4-anp").displacement
+        return (of_u * moved).sum()
+
+    assert sum(found) == pytest.approx(difference(answer, 1.0), rel=1e-6)
 
 
 def test_a_parameter_at_the_end_of_its_range():

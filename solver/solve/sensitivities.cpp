@@ -218,7 +218,7 @@ Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, co
                   Shape shape) {
   // With v = dJ/dR on constrained components, and K v = -dJ/du on the others, dJ = v . (df_int - df).
   NodalField v = tangent.followed(constrained(tangent, of_reactions));
-  NodalField b = tangent.handed_on(of_displacements);
+  NodalField b = of_displacements;
   add(1.0, tangent.product(v), b);
   for (auto& row : b) {
     for (double& component : row) component = -component;
@@ -255,7 +255,6 @@ NodalField change_of_displacements(StaticTangent& tangent, const Perturbation& p
     for (double& component : row) component = -component;
   }
   if (!perturbation.forces.empty()) add(1.0, perturbation.forces, b);
-  b = tangent.handed_on(b);
   if (!perturbation.imposed.empty()) {
     du = tangent.followed(constrained(tangent, perturbation.imposed));
     add(-1.0, tangent.product(du), b);

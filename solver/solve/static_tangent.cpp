@@ -30,9 +30,6 @@ constexpr double change = 2e-7;
 /// The largest displacement over the size of the body in differences of loads, which are almost linear.
 constexpr double change_for_loads = 1e-5;
 
-/// The share of the smoother's diagonal that is added to the cycle, as in a Newton step.
-constexpr float added_diagonal = 0.5F;
-
 const InternalForce<double>& elements_of(const Model& model) {
   return *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
 }
@@ -235,21 +232,12 @@ Rows<float> StaticTangent::difference_product(const MixedVector& x) {
   return Kx;
 }
 
-void StaticTangent::precondition(const MixedVector& r, MixedVector& z) {
-  mixed_.multigrid().cycle(r, z);
-  std::fill(z.p.begin(), z.p.end(), 0.0F);
-  const auto& D = mixed_.multigrid().elements().relaxation();
-  for (std::size_t row = 0; row < z.u.size(); ++row) {
-    for (std::size_t i = 0; i < 3; ++i) z.u[row][i] += added_diagonal * D[row][i] * r.u[row][i];
-  }
-}
-
 /// Conjugate gradients for displacements alone, where an element has more than one pressure.
 MixedVector StaticTangent::conjugate(MixedVector r) {
   MixedVector x = mixed_.multigrid().elements().zero(), z = x, d = x, q = x;
   double rz = 0.0, first = 0.0;
   for (int k = 0; k < most_products; ++k) {
-    precondition(r, z);
+    mixed_.precondition(r, z);
     const double rz_before = rz;
     rz = dot(r, z, blocks());
     if (k == 0) first = rz;

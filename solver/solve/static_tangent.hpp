@@ -8,7 +8,7 @@ namespace sandglass {
 /// The tangent stiffness K of a body in stable static equilibrium, and linear problems with it. Products are
 /// exact, those of elements in dual numbers. A problem is solved by refinement: the multigrid method of the
 /// search, on differences of forces in double precision, gives corrections for the exact residual, which ends
-/// below 1e-10.
+/// below 1e-9.
 class StaticTangent {
  public:
   /// At displacements u (m) at the full load; `levels` are those of an adaptive method, else empty. The model
@@ -55,7 +55,6 @@ class StaticTangent {
   /// Weighted K x of both unknowns, or K x (N) of displacements alone, by a difference of forces.
   MixedVector mixed_product(const MixedVector& x);
   Rows<float> difference_product(const MixedVector& x);
-  void precondition(const MixedVector& r, MixedVector& z);
 
   const Model& model_;
   const NodalField u_;
