@@ -5,6 +5,8 @@
 #include <chrono>
 #include <exception>
 
+#include "copied.hpp"
+#include "derivatives.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
 #include "problem/model.hpp"
@@ -21,25 +23,6 @@ namespace sandglass {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// An array of its own with the numbers of `rows`, in a shape.
-template <class Number, class Rows>
-py::array_t<Number> copied(const Rows& rows, std::vector<py::ssize_t> shape) {
-  return py::array_t<Number>(std::move(shape), reinterpret_cast<const Number*>(rows.data()));
-}
-
-template <class Rows>
-py::ssize_t count(const Rows& rows) {
-  return static_cast<py::ssize_t>(rows.size());
-}
-
-py::array field(const NodalField& u) {
-  return copied<double>(u, {count(u), 3});
-}
-
-py::array numbers(const std::vector<double>& values) {
-  return copied<double>(values, {count(values)});
-}
 
 py::dict sets_of(const std::map<std::string, std::vector<int>>& sets) {
   py::dict arrays;
@@ -174,6 +157,13 @@ class Answer : public NeverUnmade {
     return py::make_tuple(found.largest, found.rms);
   }
 
+  /// See Derivatives. Throws InputError for a motion.
+  Derivatives& derivatives() const {
+    require_made("Answer");
+    if (!derivatives_) throw InputError("derivatives: the answer is a motion; allowed: a static answer");
+    return *derivatives_;
+  }
+
   void write(const std::filesystem::path& path, const std::string& writer) const {
     require_made("Answer");
     ResultWriter result(model_, path, {{"written by", writer}, {"method", model_.choice().method}});
@@ -194,6 +184,7 @@ class Answer : public NeverUnmade {
     const Relaxation found = relax(model_, recorder);
     recorder_ends(recorder);
     if (!in_equilibrium(found)) throw ComputationError(outcome(found, model_.choice().precision));
+    derivatives_ = std::make_unique<Derivatives>(model_, found, recorder.frames.back().levels);
     const py::gil_scoped_acquire python;
     summary_["evaluations"] = found.steps;
     summary_["residual"] = found.residual;
@@ -218,6 +209,7 @@ class Answer : public NeverUnmade {
   const Model model_;
   std::vector<Frame> frames_;
   std::vector<HistoryRow> rows_;
+  std::unique_ptr<Derivatives> derivatives_;  // of a static answer
   py::dict summary_;
 };
 
@@ -270,6 +262,21 @@ void add_answers(py::module_& m) {
       .def("summary", &Answer::summary, "How it was found.")
       .def("estimate", &Answer::estimate,
            "The largest and the rms distance from the mean-dilatation answer, m.")
+      .def(
+          "gradient",
+          [](const Answer& answer, const py::object& displacements,
+             const std::map<std::string, Vector>& reactions,
+             bool points) { return answer.derivatives().gradient(displacements, reactions, points); },
+          "displacements"_a, "reactions"_a, "points"_a,
+          "The derivatives of a scalar by everything; see sandglass.Solution.")
+      .def(
+          "sensitivity",
+          [](const Answer& answer, const std::vector<std::map<std::string, double>>& materials,
+             const py::object& forces, const py::object& imposed) {
+            return answer.derivatives().sensitivity(materials, forces, imposed);
+          },
+          "materials"_a, "forces"_a, "imposed"_a,
+          "The derivative of the displacements along a change; see sandglass.Solution.")
       .def("write", &Answer::write, "path"_a, "writer"_a, "Writes a result file.")
       .def(
           "mesh",

@@ -58,6 +58,8 @@ def arguments():
         "force": {"set": "head", "total": [0, 0, 0.01], "moment": None, "on": "faces"},
         "body": {"sets": {"mine": {"x": [0, 0]}}, "element_sets": None, "name": "body"},
         "solve": {"threads": 1, "progress": None, "name": "tl-perturbation", "kappa": 0.1},
+        "gradient": {"displacement": POINTS, "reactions": {"head": [1, 0, 0]}},
+        "sensitivity": {"materials": [{"young_modulus": 1}], "forces": POINTS, "imposed": POINTS},
     }
 
 
@@ -66,7 +68,10 @@ def use(given):
     tables = [sg.Displacement(**given["base"]), sg.Displacement(**given["head"])]
     body = sg.Body(mesh, sg.NeoHookean(**given["law"]), tables, **given["body"])
     body.tables.append(sg.Force(**given["force"]))
-    return body.solve(**given["solve"])
+    solution = body.solve(**given["solve"])
+    assert np.isfinite(solution.gradient(**given["gradient"]).forces).all()
+    assert np.isfinite(solution.sensitivity(**given["sensitivity"])).all()
+    return solution
 
 
 def misuse(generator):
@@ -79,7 +84,7 @@ def misuse(generator):
         other = key + generator.choice(["s", "_", "\u00e9"])
         given[part][other] = given[part].pop(key)
         return given, other
-    if kind == 1 and part in ("mesh", "body") and isinstance(given[part][key], dict):
+    if kind == 1 and part in ("mesh", "body", "gradient") and isinstance(given[part][key], dict):
         name = generator.choice(list(given[part][key]))
         given[part][key][name] = generator.choice(NONSENSE)
         return given, name

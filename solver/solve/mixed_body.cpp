@@ -22,6 +22,9 @@ constexpr double hardly_changed = 0.1;
 /// at several points of an element, somewhat more helps, in shares of E/9.
 constexpr double strongest_resistance = 16.0;
 
+/// The share of the smoother's diagonal that is added to the cycle, which pressures could make indefinite.
+constexpr float added_diagonal = 0.5f;
+
 /// The pressures carry lambda (J - 1), with lambda at least this share of mu: if Poisson's ratio is zero or
 /// less, they would carry nothing, and 1 / lambda has no value. Any share is admissible.
 constexpr double least_lambda_over_mu = 0.1;
@@ -335,6 +338,16 @@ void MixedBody<Real>::correct(const MixedVector& weighted, MixedVector& step) {
   divide(weighted.p.data(), weights_.p.data(), b_.p.data(), blocks.p);
   multigrid_.cycle(b_, step);
   multiply(static_cast<float>(size), step, blocks);
+}
+
+template <class Real>
+void MixedBody<Real>::precondition(const MixedVector& r, MixedVector& z) {
+  multigrid_.cycle(r, z);
+  std::fill(z.p.begin(), z.p.end(), 0.0f);
+  const auto& D = multigrid_.elements().relaxation();
+  for (std::size_t row = 0; row < z.u.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) z.u[row][i] += added_diagonal * D[row][i] * r.u[row][i];
+  }
 }
 
 template <class Real>

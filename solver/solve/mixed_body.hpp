@@ -85,6 +85,10 @@ class MixedBody {
   /// step = minus an approximate solution of the linear problem for weighted residuals.
   void correct(const MixedVector& weighted, MixedVector& step);
 
+  /// z = an approximate solution for forces r alone, positive definite, for conjugate gradients on
+  /// displacements.
+  void precondition(const MixedVector& r, MixedVector& z);
+
   /// Weights residuals in place.
   void weigh(MixedVector& residuals) const;
 

@@ -16,9 +16,6 @@ constexpr double forcing = 0.1;
 /// Steps are limited to this change of displacement gradients.
 constexpr double longest = 1.0;
 
-/// The share of the smoother's diagonal that is added to the cycle, which pressures could make indefinite.
-constexpr float added_diagonal = 0.5f;
-
 /// The search for one step.
 template <class Real>
 class NewtonStep {
@@ -84,15 +81,6 @@ class NewtonStep {
     return scaled(f, 1.0 / (length * size_));
   }
 
-  void precondition(const MixedVector& r, MixedVector& z) {
-    mixed_.multigrid().cycle(r, z);
-    std::fill(z.p.begin(), z.p.end(), 0.0f);
-    const auto& D = mixed_.multigrid().elements().relaxation();
-    for (std::size_t row = 0; row < z.u.size(); ++row) {
-      for (std::size_t i = 0; i < 3; ++i) z.u[row][i] += added_diagonal * D[row][i] * r.u[row][i];
-    }
-  }
-
   /// Minus the forces, over their norm.
   MixedVector against_forces() const {
     MixedVector r = mixed_.multigrid().elements().zero();
@@ -105,7 +93,7 @@ class NewtonStep {
     MixedVector x = mixed_.multigrid().elements().zero(), z = x, d = x, q = x;
     double rz = 0.0;
     for (int k = 0; k < most_products; ++k) {
-      precondition(r, z);
+      mixed_.precondition(r, z);
       const double rz_before = rz;
       rz = dot(r, z, blocks());
       if (!(rz > 0.0)) {

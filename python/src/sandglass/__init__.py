@@ -9,6 +9,7 @@ import _sandglass
 from _sandglass import ComputationError, InputError, Simulation, __version__
 from sandglass import tables
 from sandglass.body import Body
+from sandglass.gradient import Gradient
 from sandglass.mesh import Mesh
 from sandglass.solution import Solution
 from sandglass.tables import *  # noqa: F401, F403
@@ -23,6 +24,7 @@ for _each in (ComputationError, InputError, Simulation):
 __all__ = [
     "Body",
     "ComputationError",
+    "Gradient",
     "InputError",
     "Mesh",
     "Simulation",

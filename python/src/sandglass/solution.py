@@ -5,6 +5,7 @@ import os
 import numpy as np
 
 import _sandglass
+from sandglass.gradient import Gradient
 
 
 class Solution:
@@ -96,6 +97,36 @@ class Solution:
         Raises InputError for a motion, and ComputationError.
         """
         return self._answer.estimate()
+
+    def gradient(self, displacement=None, reactions=None, *, points=False):
+        """The derivatives of a scalar J of this static answer by all that it depends on.
+
+        `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to dJ/dR, (3,).
+        `points`: whether also by the undeformed positions of nodes, which takes longer. One
+        adjoint problem for all parameters together, which costs about as much as `solve`. Dead
+        loads and springs may act. Levels of adaptive elements count as constant.
+
+        Returns an `sg.Gradient`. Raises InputError where forces have no potential (Updated
+        Lagrangian methods, pressures), with obstacles, in single precision and for motions;
+        ComputationError for an answer that is not stable.
+        """
+        reactions = {} if reactions is None else reactions
+        found = self._answer.gradient(displacement, reactions, points)
+        return Gradient(**{key: _fixed(value) for key, value in found.items()})
+
+    def sensitivity(self, materials=None, *, forces=None, imposed=None):
+        """The derivative of the displacements along a change of what the answer depends on; (n, 3).
+
+        `materials`: the changes of the parameters of each material, a list of dicts such as
+        `[{"young_modulus": 1.0}, {}]`, or a dict for a body of one material. `forces`: those of
+        forces on nodes, N, (n, 3). `imposed`: those of imposed displacements, m, (n, 3), of which
+        components that are free do not count. One linear problem. Raises like `gradient`.
+        """
+        if materials is None:
+            materials = []
+        elif hasattr(materials, "items"):
+            materials = [materials]
+        return _fixed(self._answer.sensitivity(materials, forces, imposed))
 
     def to_vtk(self, frame=-1):
         """A `vtkUnstructuredGrid` of a frame, undeformed, with its arrays; for pyvista as it is."""

@@ -1,0 +1,138 @@
+#include "derivatives.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/names.hpp"
+#include "copied.hpp"
+
+namespace py = pybind11;
+
+namespace sandglass {
+namespace {
+
+/// A field on `nodes` nodes from an array of Python; empty if it is None. Throws InputError that names it.
+NodalField nodal_field(const char* name, const py::object& given, std::size_t nodes) {
+  if (given.is_none()) return {};
+  using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  const py::array any = py::array::ensure(given);
+  if (!any) PyErr_Clear();
+  if (!any || std::string_view("iuf").find(any.dtype().kind()) == std::string_view::npos)
+    throw py::type_error(std::string(name) + " must be an array of numbers");
+  const Doubles array(any);
+  const bool fits =
+      array.ndim() == 2 && array.shape(1) == 3 && array.shape(0) == static_cast<py::ssize_t>(nodes);
+  if (!fits) {
+    throw InputError(std::string(name) + " must have the shape (" + std::to_string(nodes) + ", 3), but has " +
+                     py::str(array.attr("shape")).cast<std::string>());
+  }
+  const double* const first = array.data();
+  if (!std::all_of(first, first + 3 * nodes, [](double x) { return std::isfinite(x); }))
+    throw InputError(std::string(name) + " must be finite");
+  NodalField field(nodes);
+  std::copy(first, first + 3 * nodes, field.data()->data());
+  return field;
+}
+
+void require_finite(const char* argument, const std::string& name, double value) {
+  if (!std::isfinite(value)) throw InputError(fmt::format("{}: '{}' must be finite", argument, name));
+}
+
+}  // namespace
+
+template <class Use>
+auto Derivatives::with_tangent(const Use& use) {
+  const py::gil_scoped_release others;
+  const std::lock_guard alone(busy_);
+  if (!tangent_) {
+    require_differentiable(model_, answer_);
+    tangent_.emplace(model_, answer_.u, levels_);
+  }
+  return use(*tangent_);
+}
+
+py::dict Derivatives::gradient(const py::object& displacements,
+                               const std::map<std::string, Vector>& reactions, bool points) {
+  const std::size_t nodes = scene().mesh.points.size();
+  NodalField of_u = nodal_field("displacement", displacements, nodes);
+  of_u.resize(nodes);
+  const NodalField of_R = of_reactions(reactions);
+  const Gradient found = with_tangent([&](StaticTangent& tangent) {
+    return sandglass::gradient(tangent, of_u, of_R, points ? Shape::varies : Shape::constant);
+  });
+  py::list materials;
+  for (std::size_t m = 0; m < found.parameters.size(); ++m) {
+    const auto names = parameter_names(scene().materials.list[m].law);
+    py::dict own;
+    for (std::size_t k = 0; k < names.size(); ++k) own[py::str(names[k])] = found.parameters[m][k];
+    materials.append(own);
+  }
+  py::dict all;
+  all["materials"] = py::tuple(materials);
+  all["stiffness"] = numbers(found.scales);
+  all["forces"] = field(found.forces);
+  all["imposed"] = field(found.imposed);
+  all["points"] = points ? py::object(field(found.points)) : py::none();
+  return all;
+}
+
+py::array Derivatives::sensitivity(const std::vector<std::map<std::string, double>>& materials,
+                                   const py::object& forces, const py::object& imposed) {
+  const std::size_t nodes = scene().mesh.points.size();
+  const Perturbation along{parameters(materials), nodal_field("forces", forces, nodes),
+                           nodal_field("imposed", imposed, nodes)};
+  return field(with_tangent([&](StaticTangent& tangent) { return change_of_displacements(tangent, along); }));
+}
+
+NodalField Derivatives::of_reactions(const std::map<std::string, Vector>& reactions) const {
+  NodalField all(scene().mesh.points.size());
+  for (const auto& [name, weights] : reactions) {
+    for (const double weight : weights) require_finite("reactions", name, weight);
+    bool known = false;
+    for (const DrivenSet& set : scene().driven) {
+      if (set.name != name) continue;
+      known = true;
+      for (const std::size_t k : set.constraints) {
+        const Constraint& c = scene().constraints[k];
+        all[at(c.node)][at(c.component)] += weights[at(c.component)];
+      }
+    }
+    if (known) continue;
+    std::vector<std::string> names;
+    for (const DrivenSet& set : scene().driven) names.push_back(set.name);
+    throw InputError(
+        fmt::format("reactions: '{}' is no driven set; allowed: {}", name, fmt::join(names, ", ")));
+  }
+  return all;
+}
+
+std::vector<std::vector<double>> Derivatives::parameters(
+    const std::vector<std::map<std::string, double>>& materials) const {
+  if (materials.empty()) return {};
+  const auto& list = scene().materials.list;
+  if (materials.size() != list.size()) {
+    throw InputError(fmt::format("materials: {} were given; it must be one for each of the {} of the body",
+                                 materials.size(), list.size()));
+  }
+  std::vector<std::vector<double>> all;
+  for (std::size_t m = 0; m < list.size(); ++m) {
+    const auto names = parameter_names(list[m].law);
+    all.emplace_back(names.size(), 0.0);
+    for (const auto& [name, change] : materials[m]) {
+      const auto place = std::find(names.begin(), names.end(), name);
+      if (place == names.end()) {
+        throw InputError(fmt::format("materials: '{}' is no parameter of '{}'; allowed: {}", name,
+                                     name_of(list[m].law), fmt::join(names, ", ")));
+      }
+      require_finite("materials", name, change);
+      all.back()[static_cast<std::size_t>(place - names.begin())] = change;
+    }
+  }
+  return all;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,257 @@
+#include "solve/static_tangent.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "math/row_loops.hpp"
+#include "solve/acceleration.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// The exact residual, over its initial value, at which a problem is solved, and the one that is accepted if
+/// rounding allows no less.
+constexpr double solved = 1e-9, acceptable = 1e-7;
+
+/// A correction reduces the residual to about this share, more would be lost in the differences of forces.
+constexpr double share_left = 1e-4;
+
+constexpr int most_corrections = 30, most_cycles = 120, most_products = 2000;
+
+/// The change of displacement gradients in differences of forces. In nearly incompressible bodies the forces
+/// curve as lambda / mu times this, and lambda / mu times double precision, over this, is their rounding.
+constexpr double change = 2e-7;
+
+/// The largest displacement over the size of the body in differences of loads, which are almost linear.
+constexpr double change_for_loads = 1e-5;
+
+const InternalForce<double>& elements_of(const Model& model) {
+  return *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
+}
+
+}  // namespace
+
+StaticTangent::StaticTangent(const Model& model, const NodalField& u, std::vector<double> levels)
+    : model_(model), u_(u), levels_(std::move(levels)), mixed_(model, elements_of(model)) {
+  Body<double>& body = mixed_.body();
+  body.state() = state_at(elements_of(model), u_);
+  if (!levels_.empty()) elements_of(model).set_levels(body.state(), levels_);
+  body.impose(1.0);
+  mixed_.linearize();
+  mixed_.weigh();
+  mixed_.take_own_pressures();
+  mixed_.evaluate();
+  state_ = body.state();
+  pressures_ = mixed_.pressures();
+  residuals_ = mixed_.residuals();
+  forces_ = body.free_forces();
+}
+
+void StaticTangent::add_stiffness_of_loads(const Rows<double>& a, Rows<double>& forces) const {
+  const Scene& scene = model_.scene();
+  if (first_not_dead(scene.forces) == nullptr) return;
+  double largest = 0.0;
+  for (const auto& row : a) {
+    for (std::size_t i = 0; i < 3; ++i) largest = std::max(largest, std::abs(row[i]));
+  }
+  if (!(largest > 0.0)) return;
+  Loads<double> loads(scene, layout());
+  loads.set(1.0, 1.0);
+  double diameter = 0.0;
+  for (const Vector& X : scene.mesh.points) diameter = std::max(diameter, distance(X, scene.mesh.points[0]));
+  const double length = change_for_loads * diameter / largest;
+  State<double> state = state_;
+  for (const double side : {1.0, -1.0}) {
+    for (std::size_t row = 0; row < a.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) state.u[row][i] = state_.u[row][i] + side * length * a[row][i];
+    }
+    Rows<double> load(a.size());
+    loads.subtract(state, load);
+    for (std::size_t row = 0; row < a.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) forces[row][i] += side / (2.0 * length) * load[row][i];
+    }
+  }
+}
+
+NodalField StaticTangent::product(const NodalField& a) const {
+  NodalField forces(a.size());
+  if (std::ranges::all_of(a, [](const Vector& row) { return row == Vector{}; })) return forces;
+  for_each_element_slope(model_, model_.scene().materials, levels_, u_, a,
+                         [&](std::size_t e, const ElementSlopes& f) {
+                           const Hexahedron& cell = model_.scene().mesh.cells[e];
+                           for (int I = 0; I < 8; ++I) {
+                             for (int i = 0; i < 3; ++i) forces[at(cell[at(I)])][at(i)] += f(I, i).slope;
+                           }
+                         });
+  Rows<double> rows = to_rows<double>(forces, layout());
+  add_stiffness_of_loads(to_rows<double>(a, layout()), rows);
+  mixed_.body().ties().hand_on(rows);
+  return to_field(rows, layout());
+}
+
+NodalField StaticTangent::followed(const NodalField& a) const {
+  Rows<double> rows = to_rows<double>(a, layout());
+  mixed_.body().ties().follow(rows);
+  return to_field(rows, layout());
+}
+
+NodalField StaticTangent::handed_on(const NodalField& forces) const {
+  Rows<double> rows = to_rows<double>(forces, layout());
+  mixed_.body().ties().hand_on(rows);
+  return to_field(rows, layout());
+}
+
+Rows<double> StaticTangent::residual(const Rows<double>& b, const Rows<double>& a) const {
+  Rows<double> r = to_rows<double>(product(to_field(a, layout())), layout());
+  for (std::size_t row = 0; row < r.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) r[row][i] = b[row][i] - r[row][i];
+  }
+  mixed_.body().constraints().clear(r);
+  return r;
+}
+
+double StaticTangent::norm(const Rows<double>& forces) const {
+  const auto& D = mixed_.multigrid().elements().relaxation();
+  double sum = 0.0;
+  for (std::size_t row = 0; row < forces.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i)
+      sum += static_cast<double>(D[row][i]) * forces[row][i] * forces[row][i];
+  }
+  return std::sqrt(sum);
+}
+
+NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
+  Rows<double> b = to_rows<double>(handed_on(b_at_nodes), layout());
+  mixed_.body().constraints().clear(b);
+  Rows<double> a(b.size());
+  const double first = norm(b);
+  if (!(first > 0.0)) return to_field(a, layout());
+  Rows<double> r = b;
+  double size = first;
+  for (int k = 0; k < most_corrections && size > solved * first; ++k) {
+    MixedVector unit = mixed_.multigrid().elements().zero();
+    for (std::size_t row = 0; row < r.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) unit.u[row][i] = static_cast<float>(r[row][i] / size);
+    }
+    const MixedVector x = correction(unit);
+    Rows<double> next = a;
+    for (std::size_t row = 0; row < a.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) next[row][i] += size * static_cast<double>(x.u[row][i]);
+    }
+    mixed_.body().ties().follow(next);
+    const Rows<double> left = residual(b, next);
+    const double size_left = norm(left);
+    if (!(size_left < 0.9 * size)) break;
+    a = std::move(next);
+    r = left;
+    size = size_left;
+  }
+  if (!(size <= acceptable * first)) {
+    throw ComputationError(fmt::format(
+        "the linear problem of the derivatives was not solved: its residual stopped falling at {:.1e}; the "
+        "equilibrium may be at a limit of the load",
+        size / first));
+  }
+  double work = 0.0;
+  for (std::size_t row = 0; row < a.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) work += b[row][i] * a[row][i];
+  }
+  if (!(work > 0.0)) {
+    throw ComputationError(
+        "the equilibrium is unstable: its stiffness is negative along the answer of the linear problem");
+  }
+  return to_field(a, layout());
+}
+
+MixedVector StaticTangent::correction(const MixedVector& r) {
+  return method_named(model_.choice().method).pressure_varies ? conjugate(r) : accelerated(r);
+}
+
+MixedVector StaticTangent::mixed_product(const MixedVector& x) {
+  const double gradient = mixed_.multigrid().elements().largest_gradient(x.u);
+  MixedVector Kx = mixed_.multigrid().elements().zero();
+  if (!(gradient > 0.0)) return Kx;
+  const double length = change / gradient;
+  mixed_.move(x, length);
+  mixed_.evaluate();
+  Kx = mixed_.residuals();
+  mixed_.body().state() = state_;
+  mixed_.pressures() = pressures_;
+  add(-1.0F, residuals_, Kx, blocks());
+  multiply(static_cast<float>(1.0 / length), Kx, blocks());
+  return Kx;
+}
+
+/// Anderson's acceleration of the multigrid cycle, for displacements and pressures.
+MixedVector StaticTangent::accelerated(const MixedVector& r) {
+  const MixedVector zero = mixed_.multigrid().elements().zero();
+  MixedVector x = zero, b = r, best = zero, left, step, change_of_x;
+  mixed_.weigh(b);
+  left = b;
+  multiply(-1.0F, left, blocks());
+  Acceleration acceleration(blocks());
+  const double first = std::sqrt(dot(b, b, blocks()));
+  double least = first;
+  for (int k = 0; k < most_cycles && least > share_left * first; ++k) {
+    step = zero;
+    acceleration.combine(left, step);
+    change_of_x = left;
+    mixed_.correct(left, change_of_x);
+    add(1.0F, change_of_x, step, blocks());
+    add(1.0F, step, x, blocks());
+    acceleration.moved(step);
+    left = mixed_product(x);
+    add(-1.0F, b, left, blocks());
+    const double size = std::sqrt(dot(left, left, blocks()));
+    if (!std::isfinite(size)) break;
+    if (size < least) {
+      least = size;
+      best = x;
+    }
+  }
+  return best;
+}
+
+Rows<float> StaticTangent::difference_product(const MixedVector& x) {
+  const double length = change / mixed_.multigrid().elements().largest_gradient(x.u);
+  mixed_.move(x, length);
+  Rows<double> f;
+  mixed_.evaluate(nullptr, f);
+  mixed_.body().state() = state_;
+  mixed_.pressures() = pressures_;
+  Rows<float> Kx(f.size());
+  for (std::size_t row = 0; row < f.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i)
+      Kx[row][i] = static_cast<float>((f[row][i] - forces_[row][i]) / length);
+  }
+  return Kx;
+}
+
+/// Conjugate gradients for displacements alone, where an element has more than one pressure.
+MixedVector StaticTangent::conjugate(MixedVector r) {
+  MixedVector x = mixed_.multigrid().elements().zero(), z = x, d = x, q = x;
+  double rz = 0.0, first = 0.0;
+  for (int k = 0; k < most_products; ++k) {
+    mixed_.precondition(r, z);
+    const double rz_before = rz;
+    rz = dot(r, z, blocks());
+    if (k == 0) first = rz;
+    if (!(rz > share_left * share_left * first)) break;
+    if (k > 0) multiply(static_cast<float>(rz / rz_before), d, blocks());
+    add(1.0F, z, d, blocks());
+    q.u = difference_product(d);
+    const double curvature = dot(d, q, blocks());
+    if (!(curvature > 0.0)) break;
+    const auto length = static_cast<float>(rz / curvature);
+    add(length, d, x, blocks());
+    add(-length, q, r, blocks());
+  }
+  return x;
+}
+
+}  // namespace sandglass
