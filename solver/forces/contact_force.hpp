@@ -55,6 +55,10 @@ class ContactForce : public BodyForce {
   /// spring that pushes and pulls: without it, the force on a body is a smooth function of its displacements.
   virtual void fix_contact(bool /*fixed*/, Row<double>* /*memory*/) const {}
 
+  /// Frees or attaches one node whose fixed contact was contrary at the last evaluation; false if there is
+  /// none.
+  virtual bool correct_contact(Row<double>* /*memory*/) const { return false; }
+
   /// Moves touching nodes along its normal so that displacements from those of `before` change their depth as
   /// on a plane: nodes slide along curved obstacles.
   virtual void slide(Factors /*factors*/, NodalRows /*before*/, const Row<double>* /*memory*/,

@@ -38,8 +38,8 @@ struct Obstacle {
   bool inside = false;    ///< whether the body is inside of it, as in a cavity
   Vector displacement{};  ///< at the factor one, m
   LoadCurve curve = {};
-  double friction = 0.0;  ///< Coulomb's coefficient
-  double penalty = 1.0;   ///< see parameters
+  double friction = 0.0;   ///< Coulomb's coefficient
+  double penalty = 100.0;  ///< see parameters
   Method method = Method::penalty;
 
   static constexpr auto parameters() {
@@ -72,10 +72,13 @@ struct Obstacle {
         Parameter{
             &O::penalty, "penalty", "-", Range::positive(),
             "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of the "
-            "elements that may touch it",
+            "elements that may touch it; motions take longer steps with a smaller one",
             false},
-        Parameter{&O::method, "method", "-", Range::any(),
-                  "penalty, or kinematic in motions: every step moves nodes back onto it", false}};
+        Parameter{
+            &O::method, "method", "-", Range::any(),
+            "penalty, or kinematic in motions: every step moves nodes back onto it, and steps are as long as "
+            "without it",
+            false}};
   }
   std::optional<BrokenRule> broken_rule() const;
 

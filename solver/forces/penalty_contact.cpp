@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::string_view path_of_friction = "friction depends on the path";
 
-/// It keeps rows for each node: with friction its anchor, m; whether it touches; with friction a second one,
-/// the extension of the spring, m.
+/// It keeps rows for each node. With friction its anchor, m, else whether its fixed contact is contrary;
+/// whether it touches. With friction also the extension of its spring, m.
 class PenaltyContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
@@ -29,10 +29,9 @@ class PenaltyContact final : public ObstacleContact {
       const bool inside = gap.distance < 0.0, touched = of_node[0][3] != 0.0;
       const bool touches = fixed ? touched : inside;
       if (touches != inside) ++memory.sums[2];
-      if (!touches) {
-        if (touched) let_go(stiffness, of_node, memory);
-        return;
-      }
+      if (!touches && touched) let_go(stiffness, of_node, memory);
+      if (!sticks()) of_node[0][0] = touches != inside ? 1.0 : 0.0;
+      if (!touches) return;
       const double depth = -gap.distance;
       memory.pushes[3] += 0.5 * stiffness * depth * depth;
       memory.moves[3] = std::max(memory.moves[3], depth);
@@ -62,6 +61,17 @@ class PenaltyContact final : public ObstacleContact {
 
   void fix_contact(bool fixed, Row<double>* memory) const override {
     Memory(memory).sums[3] = fixed ? 1.0 : 0.0;
+  }
+
+  bool correct_contact(Row<double>* memory) const override {
+    Row<double>* of_nodes = Memory(memory).of_nodes;
+    for (std::size_t k = nodes_.size(); k-- > 0;) {
+      Row<double>& of_node = of_nodes[by_node() * k];
+      if (of_node[0] == 0.0) continue;
+      of_node = {{0.0, 0.0, 0.0, 1.0 - of_node[3]}};
+      return true;
+    }
+    return false;
   }
 
   void slide(Factors factors, NodalRows before, const Row<double>* memory,

@@ -102,6 +102,9 @@ class Body {
   /// See Loads::fix_contact.
   void fix_contact(bool fixed) { loads_.fix_contact(fixed); }
 
+  /// See Loads::correct_contact.
+  void correct_contact() { loads_.correct_contact(); }
+
   /// See Loads::set_contact_stiffness.
   void set_contact_stiffness(Rows<float>& roots) const {
     loads_.set_contact_stiffness(of_all(state_.u), roots);

@@ -45,12 +45,16 @@ constexpr double most_growth = 1.5, most_growth_of_the_last_try = 3.0;
 constexpr double most_extended_growth = 10.0;
 
 /// The nodes that touch obstacles are updated when the norm has fallen to this share. Where that does not
-/// reduce the nodes whose contact is wrong, the next update waits for a tenth of that, until the share is the
-/// least.
+/// leave fewer nodes whose contact is contrary, the next update waits for a tenth of that, until the share is
+/// the least.
 constexpr double updated_share = 0.1, least_updated_share = 1e-3;
 
+/// This many updates may fail to leave fewer such nodes; then only one of them is changed at a time, until
+/// they are fewer, which excludes cycles (Portugal, Judice and Vicente 1994).
+constexpr int most_failed_updates = 3;
+
 /// Further updates do not count as progress.
-constexpr int most_updates = 30;
+constexpr int most_updates = 100;
 
 /// A saddle is left by this change of displacement gradients, doubled repeatedly. Directions whose potentials
 /// differ by less than this share of their fall count as equal; the first is taken.
@@ -148,13 +152,23 @@ template <class Real>
 void Equilibrium<Real>::update_contact() {
   const int contrary = body().touch().contrary;
   if (contrary == 0) return;
-  body().fix_contact(false);
+  if (contrary < contact_.fewest) {
+    contact_.fewest = contrary;
+    contact_.failed = 0;
+  } else {
+    ++contact_.failed;
+    contact_.share = std::max(0.1 * contact_.share, least_updated_share);
+  }
+  if (contact_.failed > most_failed_updates) {
+    body().correct_contact();
+  } else {
+    body().fix_contact(false);
+  }
   mixed_.evaluate();
   if (stage_ != Stage::acceleration) return;
   body().fix_contact(true);
-  if (contrary >= contact_.contrary) contact_.share = std::max(0.1 * contact_.share, least_updated_share);
-  contact_ = {mixed_.norm(), contact_.share, contrary, contact_.updates + 1};
-  if (contact_.updates > most_updates) return;
+  contact_.norm = mixed_.norm();
+  if (++contact_.updates > most_updates) return;
   progress_ = {contact_.norm};
   acceleration_.clear();
   if (is_healthy(body())) mixed_.linearize();

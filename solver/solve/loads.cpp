@@ -166,6 +166,13 @@ void Loads<Real>::fix_contact(bool fixed) {
 }
 
 template <class Real>
+void Loads<Real>::correct_contact() {
+  for (std::size_t c = contacts_.size(); c-- > 0;) {
+    if (contacts_[c]->correct_contact(memory_.data() + memory_of_[c])) return;
+  }
+}
+
+template <class Real>
 void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const {
   const Rows<double> there = loaded(u);
   Rows<float> own(rows_.size());

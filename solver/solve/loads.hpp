@@ -38,6 +38,9 @@ class Loads {
   /// See ContactForce::fix_contact.
   void fix_contact(bool fixed);
 
+  /// Changes one node of all obstacles; see ContactForce::correct_contact.
+  void correct_contact();
+
   /// Sets `roots` (by row) to the stiffness of obstacles; see ContactForce::set_contact_stiffness.
   void set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const;
 

@@ -14,12 +14,15 @@ inline std::vector<int> plane(const NodalField& points, std::size_t axis, double
 inline Obstacle ceiling(double z, double down) {
   Obstacle made{.label = "plate", .set = "top", .point = {0.0, 0.0, z}, .normal = {0.0, 0.0, -2.0}};
   made.displacement = {0.0, 0.0, -down};
+  made.penalty = 1.0;
   return made;
 }
 
 /// A plane through z = 0 that faces the body above it.
 inline Obstacle ground() {
-  return {.label = "ground", .set = "foot", .normal = {0.0, 0.0, 1.0}};
+  Obstacle made{.label = "ground", .set = "foot", .normal = {0.0, 0.0, 1.0}};
+  made.penalty = 1.0;
+  return made;
 }
 
 /// A column on a fixed foot.
