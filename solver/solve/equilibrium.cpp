@@ -49,6 +49,9 @@ constexpr double most_extended_growth = 10.0;
 /// the least.
 constexpr double updated_share = 0.1, least_updated_share = 1e-3;
 
+/// They are updated after this many steps at the latest.
+constexpr int steps_between_contacts = 25;
+
 /// This many updates may fail to leave fewer such nodes; then only one of them is changed at a time, until
 /// they are fewer, which excludes cycles (Portugal, Judice and Vicente 1994).
 constexpr int most_failed_updates = 3;
@@ -128,7 +131,8 @@ void Equilibrium<Real>::begin_acceleration() {
 
 template <class Real>
 bool Equilibrium<Real>::accelerated() {
-  if (mixed_.norm() < contact_.share * contact_.norm) update_contact();
+  if (mixed_.norm() < contact_.share * contact_.norm || ++contact_.steps > steps_between_contacts)
+    update_contact();
   const double norm = mixed_.norm();
   if (effort_ == Effort::full && norm < best_norm_) {
     best_norm_ = norm;
@@ -168,6 +172,7 @@ void Equilibrium<Real>::update_contact() {
   if (stage_ != Stage::acceleration) return;
   body().fix_contact(true);
   contact_.norm = mixed_.norm();
+  contact_.steps = 0;
   if (++contact_.updates > most_updates) return;
   progress_ = {contact_.norm};
   acceleration_.clear();

@@ -119,7 +119,7 @@ class Equilibrium {
   /// The updates of touching nodes since acceleration began.
   struct ContactUpdates {
     double norm = 0.0, share = 0.0;  // after the last one, and by which it falls before the next
-    int fewest = std::numeric_limits<int>::max(), failed = 0, updates = 0;
+    int fewest = std::numeric_limits<int>::max(), failed = 0, updates = 0, steps = 0;
   };
 
   /// The patience of the descent: a buckling body descends far before its norm falls, and near the answer
