@@ -5,16 +5,19 @@ the same name, replace the first, drops sets made of sets, mixes up the blocks o
 rejects lower-case types.
 """
 
+import difflib
 import re
+from collections import Counter
 
 import numpy as np
 
 from common.errors import InputError
 from exchange.abaqus_sets import NONE, Part, Resolver
-from exchange.foreign_mesh import HEXAHEDRON, SCOPE, Block, ForeignMesh, content
+from exchange.foreign_mesh import HEXAHEDRON, SCOPE, Block, ForeignMesh, content, decoded, parsed
 
 GENERATING = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM")
 AS_NSET = "; list its nodes as *NSET if the case needs them"
+SURFACES = ("SFM", "CPS", "CPE", "CAX")  # without meaning of their own in three dimensions
 VOLUME = re.compile(r"(A?C|D?C|Q|G|GK|COH|E)3D\d|SC[68]R|CSS8|C3D")
 BRICK = re.compile(r"C3D8[A-Z]*")
 # The digits of a type are the number of its nodes, except those of beams and of one shell.
@@ -54,7 +57,7 @@ class _Data:
         ends = np.cumsum([line.count(",") + 1 for line in lines], dtype=np.int64)
         text = ",".join(lines)
         if lines and not text.translate(_PLAIN):
-            found = np.fromstring(text, kind, sep=" , ") if _separated(text) else NONE
+            found = parsed(text, kind, " , ") if _separated(text) else NONE
             if len(found) == ends[-1] and (abs(found) < 2**53).all():
                 return found, ends
         rows = []
@@ -82,17 +85,21 @@ class _Reader:
     def __init__(self):
         self.model = self.part = Part("")
         self.parts, self.instances, self.notes = {}, [], []
+        self.unread = {}  # keyword -> where it is first
         self.assembly = Part("Assembly")
 
     def read(self, path, depth, before):
         """Reads all keywords of a file and of the files it includes. before: the keyword and the
-        options that the first data lines belong to, or None. Raises InputError."""
+        options that the first data lines belong to, or None. Returns the same for the lines that
+        follow. Raises InputError."""
         for keyword, options, data, where in _keywords(path, before):
             if keyword == "INCLUDE":
                 if depth > 9 or not options.get("INPUT"):
                     raise InputError(f"{where}: *INCLUDE needs INPUT=FILE, nested at most ten deep")
-                self.read(path.parent / options["INPUT"], depth + 1, before)
-                continue
+                before = self.read(path.parent / options["INPUT"], depth + 1, before)
+                if not data.lines:
+                    continue
+                keyword, options = before or (keyword, options)
             before = keyword, options
             if file := options.get("INPUT"):
                 if data.lines:
@@ -105,8 +112,14 @@ class _Reader:
                 )
             if read := getattr(self, "_read_" + keyword.lower().replace(" ", "_"), None):
                 read(options, data, where)
+            elif not keyword.startswith(("END ", "HEADING")):
+                self.unread.setdefault(keyword, where)
+        return before
 
     def _read_part(self, options, data, where):
+        name = options.get("NAME", "").upper()
+        if name in self.parts:
+            raise InputError(f"{where}: *PART: '{name}' is given twice; names must differ")
         self.part = self.parts[options.get("NAME", "").upper()] = Part(options.get("NAME", ""))
 
     def _read_assembly(self, options, data, where):
@@ -118,6 +131,8 @@ class _Reader:
         if not name or source is None:
             known = ", ".join(part.name for part in self.parts.values()) or "none"
             raise InputError(f"{where}: *INSTANCE needs NAME= and PART=, of {known}")
+        if self.part in self.parts.values():
+            raise InputError(f"{where}: *INSTANCE: parts hold no instances; close *PART before it")
         if name.upper() in [part.name.upper() for part in self.instances]:
             raise InputError(f"{where}: *INSTANCE: '{name}' is given twice; names must differ")
         rows = [[_real(at, field) for field in fields if field] for at, fields in data.fields()]
@@ -258,6 +273,26 @@ class _Reader:
             entry = np.array([_whole(place, target)]) if target.isdigit() else target
             self.part.add("SURFACE", name, place, (label, entry))
 
+    def _ignored(self):
+        """Notes on the keywords that are not read, and on elements that have no volume."""
+        known = [name[6:].upper().replace("_", " ") for name in dir(self) if name[:6] == "_read_"]
+        words = []
+        for keyword, where in self.unread.items():
+            near = difflib.get_close_matches(keyword, known, 1, 0.8)
+            hint = f", did you mean *{near[0]}?" if near else ""
+            words.append(f"*{keyword} ({where.rpartition('/')[2]}{hint})")
+        if words:
+            rule = "materials, constraints, ties and loads are given by the case"
+            yield f"not read: {', '.join(words)}; {rule}"
+        kinds = Counter()
+        for part in [self.model, self.assembly, *self.instances]:
+            for block in part.blocks:
+                if block.dimension < 3 and not block.kind.startswith(SURFACES):
+                    kinds[block.kind] += len(block.ids)
+        if kinds:
+            words = ", ".join(f"{count} of type {kind}" for kind, count in kinds.items())
+            yield f"elements that are no hexahedra define sets, without stiffness or mass: {words}"
+
     def mesh(self, path):
         """The ForeignMesh. Raises InputError where a set names what does not exist."""
         if self.parts and not self.instances:
@@ -307,7 +342,7 @@ class _Reader:
             sets,
             element_sets=element_sets,
             scopes=names,
-            notes=self.notes,
+            notes=[*self._ignored(), *self.notes],
         )
 
 
@@ -345,7 +380,7 @@ def _joined(blocks):
 
 def _lines(path):
     """The lines of a text, whatever ends them. Raises InputError."""
-    text = content(path).decode("utf-8", "replace")
+    text = decoded(content(path))
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
@@ -381,7 +416,7 @@ def _parsed(line):
 def _whole(place, text):
     try:
         number = int(text)
-        if abs(number) < 2**63:
+        if abs(number) < 2**63 and "_" not in text:
             return number
     except ValueError:
         pass
@@ -390,6 +425,6 @@ def _whole(place, text):
 
 def _real(place, text):
     try:
-        return float(text.upper().replace("D", "E")) if text else 0.0
+        return float(text.upper().replace("D", "E").replace("_", "?")) if text else 0.0
     except ValueError:
         raise InputError(f"{place}: {text!r} must be a number") from None
