@@ -11,16 +11,8 @@ import re
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import (
-    HEXAHEDRON,
-    MOST,
-    Block,
-    ForeignMesh,
-    NotNumber,
-    as_numbers,
-    content,
-    decoded,
-)
+from exchange.foreign_mesh import HEXAHEDRON, MOST, Block, ForeignMesh, NotNumber
+from exchange.foreign_mesh import as_numbers, content, decoded
 
 # Gmsh's number of an element type: name, dimension, nodes.
 KINDS = {
