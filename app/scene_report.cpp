@@ -154,13 +154,8 @@ void print_replaced_sets(const CaseOnMesh& problem, const Scene& scene, const st
 void warn_of_oddities(const Case& description, const Scene& scene, const std::string& of) {
   const std::string file = description.file.string();
   const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
-  for (const NodeSetRule& rule : description.sets) {
-    const std::string cut = cut_plane(scene.mesh, on_boundary, rule);
-    if (!cut.empty()) {
-      warn(fmt::format("{}: sets.{} {}, which seem to be one plane; if they are, widen the limits", file,
-                       rule.name, cut));
-    }
-  }
+  for (const std::string& cut : cut_planes(scene.mesh, on_boundary, description.sets))
+    warn(fmt::format("{}: {}, which seem to be one plane; if they are, widen the limits", file, cut));
   const std::string seam = described(seam_of(scene.mesh, scene.ties, scene.boundary), scene.mesh);
   if (!seam.empty()) warn(of + seam);
   warn_of_units(description, scene, of);
