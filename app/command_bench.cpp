@@ -8,6 +8,7 @@
 #include "app/execution_options.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
+#include "app/scene_report.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
@@ -94,8 +95,8 @@ int run_bench(const BenchOptions& options) {
   std::vector<BenchRecord> records;
   for (std::size_t n = 0; n < subjects.size(); ++n) {
     const Subject& subject = subjects[n];
-    const Scene scene =
-        subject.description ? read_scene(*subject.description) : box_scene(subject.elements, subject.shapes);
+    const Scene scene = subject.description ? understood_scene(*subject.description)
+                                            : box_scene(subject.elements, subject.shapes);
     std::vector<BenchRecord> found;
     {
       Progress progress("bench");

@@ -8,6 +8,7 @@
 #include "app/execution_options.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
+#include "app/scene_report.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
 #include "choice/case_writer.hpp"
@@ -66,6 +67,7 @@ int run_choose(const ChooseOptions& options) {
   const CaseOnMesh problem = with_mesh(find_case(options.name));
   const Scene scene = make_scene(problem);
   if (scene.settings.quasi_static) require_held(scene);
+  print_understood(problem, scene);
   for (const auto& place : {options.output, options.json}) {
     if (!place.empty()) require_place(place, problem.description.files);
   }

@@ -91,10 +91,9 @@ void add_mesh_command(CLI::App& app) {
     fmt::print("{}: {} nodes, {} elements, smallest scaled Jacobian {:.3f}\n", options->output,
                scene.mesh.points.size(), scene.mesh.cells.size(), quality.smallest);
     print_quality(quality);
-    print_parts(scene);
     print_sets(problem.description, scene);
-    print_free_motions(scene);
-    warn_of_oddities(problem.description, scene);
+    print_understood(problem, scene);
+    if (scene.settings.quasi_static) print_free_motions(scene);
   });
 }
 

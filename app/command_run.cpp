@@ -294,9 +294,7 @@ int run_case(const RunOptions& options) {
     require_steps(own);
   }
   print_problem(scene);  // the input has been checked by now
-  print_parts(scene);
-  if (options.ranks->rank() == 0) warn_of_oddities(problem.description, scene);
-  if (!scene.settings.quasi_static) print_free_motions(scene);
+  if (options.ranks->rank() == 0) print_understood(problem, scene);
   const auto refined = refine_as_requested(options, given, problem, scene);
   std::optional<Model> on_refined;
   if (refined) on_refined.emplace(refined->mesh.scene, choice);

@@ -10,6 +10,7 @@
 #include "app/execution_options.hpp"
 #include "app/foreign_files.hpp"
 #include "app/machine.hpp"
+#include "app/scene_report.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
@@ -147,7 +148,7 @@ int run(const ScoreOptions& options) {
                                  options.matching.tolerance));
   }
   if (options.name.find('/') != std::string::npos) throw InputError("--name must have no '/'");
-  const Scene scene = read_scene(find_case(options.case_name));
+  const Scene scene = understood_scene(find_case(options.case_name));
   if (!scene.settings.quasi_static) {
     throw InputError(fmt::format("{}: a dynamic case has no answer to score", scene.settings.file.string()));
   }

@@ -7,6 +7,7 @@
 #include "app/commands.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
+#include "app/scene_report.hpp"
 #include "app/task_pool.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
@@ -113,7 +114,7 @@ void print_map(const Map& map, const std::vector<Cell>& cells) {
 
 /// The error up to which a method is good on this case, as in `verify`.
 double limit_of(const Case& description) {
-  const Scene scene = read_scene(description);
+  const Scene scene = understood_scene(description);
   return good_limit(golden_to_truth(scene, read_references(scene)));
 }
 

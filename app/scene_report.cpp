@@ -9,6 +9,7 @@
 
 #include "app/si_units.hpp"
 #include "comparison/comparison.hpp"
+#include "io/case_file.hpp"
 #include "mesh/oddities.hpp"
 #include "mesh/parts.hpp"
 #include "problem/held.hpp"
@@ -86,31 +87,30 @@ void warn(const std::string& text) {
   fmt::print(stderr, "warning: {}\n", text);
 }
 
-void warn_of_units(const Case& description, const Scene& scene) {
+void warn_of_units(const Case& description, const Scene& scene, const std::string& of) {
   const auto [low, high] = bounding_box(scene.mesh.points);
   const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
   if (std::holds_alternative<MeshFile>(description.mesh) && longest > most_length) {
     warn(fmt::format(
-        "the mesh is {} long, and files are read in m: if it is in mm, multiply its points by 0.001 (no key "
+        "{}the mesh is {} long, and files are read in m: if it is in mm, multiply its points by 0.001 (no "
+        "key "
         "does so), or give the whole case in mm, s, t, N and MPa, and read printed units accordingly",
-        length_text(longest)));
+        of, length_text(longest)));
     return;
   }
   for (const Material& material : scene.materials.list) {
     const double modulus = young_modulus(elastic_law(kernel_law(material)));
     if (material.density * 9.81 * longest < most_weight * modulus) continue;
     fmt::print(
-        "note: a body of {} with a Young's modulus of {} and a density of {:.4g} kg/m^3 would weigh {:.2g} "
-        "times "
-        "what it resists: units are m, Pa and kg/m^3\n",
-        length_text(longest), with_prefix(modulus, "Pa"), material.density,
+        "note: {}a body of {} with a Young's modulus of {} and a density of {:.4g} kg/m^3 would weigh {:.2g} "
+        "times what it resists: units are m, Pa and kg/m^3\n",
+        of, length_text(longest), with_prefix(modulus, "Pa"), material.density,
         material.density * 9.81 * longest / modulus);
   }
 }
 
-}  // namespace
-
-void print_parts(const Scene& scene) {
+/// The parts of a body that are not joined, if there are several: elements, place, mass.
+void print_parts(const Scene& scene, const std::string& of) {
   constexpr std::size_t most = 4;
   const std::vector<int> parts = parts_of_nodes(scene.mesh, scene.ties);
   struct Part {
@@ -136,8 +136,38 @@ void print_parts(const Scene& scene) {
                                 extent_text(part.nodes, scene.mesh.points)));
   }
   if (all.size() > most) words.push_back(fmt::format("{} more", all.size() - most));
-  fmt::print("parts: {}\n", fmt::join(words, "; "));
+  fmt::print("{}parts: {}\n", of, fmt::join(words, "; "));
 }
+
+/// A note on each set of the mesh's file that a rule of the case replaces by another.
+void print_replaced_sets(const CaseOnMesh& problem, const Scene& scene, const std::string& of) {
+  if (!problem.description.refinements.empty()) return;  // which add nodes to sets
+  for (const NodeSetRule& rule : problem.description.sets) {
+    const auto own = problem.sets.find(rule.name);
+    if (own == problem.sets.end() || own->second == scene.sets.at(rule.name)) continue;
+    fmt::print("note: {}sets.{} ({}) replaces the set of that name in the mesh's file ({})\n", of, rule.name,
+               plural(scene.sets.at(rule.name).size(), "node"), plural(own->second.size(), "node"));
+  }
+}
+
+/// Warnings of probable mistakes, and a note on sets that no table uses.
+void warn_of_oddities(const Case& description, const Scene& scene, const std::string& of) {
+  const std::string file = description.file.string();
+  const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
+  for (const std::string& cut : cut_planes(scene.mesh, on_boundary, description.sets))
+    warn(fmt::format("{}: {}, which seem to be one plane; if they are, widen the limits", file, cut));
+  const std::string seam = described(seam_of(scene.mesh, scene.ties, scene.boundary), scene.mesh);
+  if (!seam.empty()) warn(of + seam);
+  warn_of_units(description, scene, of);
+  std::vector<std::string> unused;
+  const UsedSets used = used_sets(description);
+  for (const NodeSetRule& rule : description.sets) {
+    if (!used.nodes.contains(rule.name)) unused.push_back(rule.name);
+  }
+  if (!unused.empty()) fmt::print("note: {}no table uses the sets {}\n", of, fmt::join(unused, ", "));
+}
+
+}  // namespace
 
 void print_sets(const Case& description, const Scene& scene) {
   const UsedSets used = used_sets(description);
@@ -158,30 +188,24 @@ void print_sets(const Case& description, const Scene& scene) {
   }
 }
 
-void warn_of_oddities(const Case& description, const Scene& scene) {
-  const std::string file = description.file.string();
-  const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
-  for (const NodeSetRule& rule : description.sets) {
-    const std::string cut = cut_plane(scene.mesh, on_boundary, rule);
-    if (!cut.empty()) {
-      warn(fmt::format("{}: sets.{} {}, which seem to be one plane; if they are, widen the limits", file,
-                       rule.name, cut));
-    }
-  }
-  const std::string seam = described(seam_of(scene.mesh, scene.ties, scene.boundary), scene.mesh);
-  if (!seam.empty()) warn(seam);
-  warn_of_units(description, scene);
-  std::vector<std::string> unused;
-  const UsedSets used = used_sets(description);
-  for (const NodeSetRule& rule : description.sets) {
-    if (!used.nodes.contains(rule.name)) unused.push_back(rule.name);
-  }
-  if (!unused.empty()) fmt::print("note: no table uses the sets {}\n", fmt::join(unused, ", "));
+void print_understood(const CaseOnMesh& problem, const Scene& scene, const std::string& of) {
+  print_parts(scene, of);
+  if (!scene.settings.quasi_static) print_free_motions(scene, of);
+  print_replaced_sets(problem, scene, of);
+  warn_of_oddities(problem.description, scene, of);
 }
 
-void print_free_motions(const Scene& scene) {
+void print_free_motions(const Scene& scene, const std::string& of) {
   const std::string free = described_free_motions(scene);
-  if (!free.empty()) fmt::print("note: nothing holds {}\n", free);
+  if (!free.empty()) fmt::print("note: {}nothing holds {}\n", of, free);
+}
+
+Scene understood_scene(Case description) {
+  const CaseOnMesh problem = with_mesh(std::move(description));
+  Scene scene = make_scene(problem);
+  if (scene.settings.quasi_static) require_held(scene);
+  print_understood(problem, scene, scene.settings.name + ": ");
+  return scene;
 }
 
 }  // namespace sandglass

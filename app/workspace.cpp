@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "app/scene_report.hpp"
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "comparison/comparison.hpp"
 #include "io/case_file.hpp"
 #include "io/project_folder.hpp"
-#include "problem/held.hpp"
 
 namespace sandglass {
 
@@ -119,8 +119,7 @@ std::deque<Scene> read_scenes(const std::vector<std::string>& names,
   std::deque<Scene> scenes;
   for (auto& scene : cases) {
     if (fit(scene)) {
-      scenes.push_back(read_scene(std::move(scene)));
-      if (scenes.back().settings.quasi_static) require_held(scenes.back());
+      scenes.push_back(understood_scene(std::move(scene)));
     } else if (!names.empty()) {
       throw InputError(fmt::format("{}: a dynamic case has no {}", scene.file.string(), has_not));
     }

@@ -5,16 +5,20 @@ the same name, replace the first, drops sets made of sets, mixes up the blocks o
 rejects lower-case types.
 """
 
+import difflib
 import re
+from collections import Counter
 
 import numpy as np
 
 from common.errors import InputError
 from exchange.abaqus_sets import NONE, Part, Resolver
-from exchange.foreign_mesh import HEXAHEDRON, SCOPE, Block, ForeignMesh, content
+from exchange.abaqus_text import Data, keywords, lines_of, real_number, whole_number
+from exchange.foreign_mesh import HEXAHEDRON, SCOPE, Block, ForeignMesh
 
 GENERATING = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM")
 AS_NSET = "; list its nodes as *NSET if the case needs them"
+SURFACES = ("SFM", "CPS", "CPE", "CAX")  # without meaning of their own in three dimensions
 VOLUME = re.compile(r"(A?C|D?C|Q|G|GK|COH|E)3D\d|SC[68]R|CSS8|C3D")
 BRICK = re.compile(r"C3D8[A-Z]*")
 # The digits of a type are the number of its nodes, except those of beams and of one shell.
@@ -35,78 +39,45 @@ def read(path):
     return reader.mesh(path)
 
 
-class _Data:
-    """The data lines of a keyword: raw lines, of which the first is line `first` of a file."""
-
-    def __init__(self, path, first, raw):
-        self.path, self.first, self.raw = path, first, raw
-        self.lines = [line for line in raw if line.strip() and line.lstrip()[:2] != "**"]
-
-    def fields(self):
-        """(place, fields) of each line; an empty field after a last comma counts."""
-        for number, line in enumerate(self.raw, self.first):
-            if line.strip() and line.lstrip()[:2] != "**":
-                yield f"{self.path}:{number}", [field.strip() for field in line.split(",")]
-
-    def numbers(self, kind, read):
-        """All numbers (n,), and where lines end in them. read: reads a field of a place."""
-        lines = [line.rstrip(", \t") for line in self.lines]
-        ends = np.cumsum([line.count(",") + 1 for line in lines], dtype=np.int64)
-        text = ",".join(lines)
-        if lines and not text.translate(_PLAIN):
-            found = np.fromstring(text, kind, sep=" , ") if _separated(text) else NONE
-            if len(found) == ends[-1] and (abs(found) < 2**53).all():
-                return found, ends
-        rows = []
-        for place, fields in self.fields():
-            while fields and not fields[-1]:
-                fields.pop()
-            rows.append([read(place, field) for field in fields])
-        ends = np.cumsum([len(row) for row in rows], dtype=np.int64)
-        return np.array([n for row in rows for n in row], dtype=kind), ends
-
-    def place(self, line):
-        """Where a line of `lines` is."""
-        return list(self.fields())[line][0]
-
-
-_PLAIN = str.maketrans("", "", "0123456789+-.eE, \t")
-
-
-def _separated(text):
-    """Whether one comma is between any two numbers."""
-    return not re.search(r"[^\s,][ \t]+[^\s,]|,\s*,", text)
-
-
 class _Reader:
     def __init__(self):
         self.model = self.part = Part("")
         self.parts, self.instances, self.notes = {}, [], []
+        self.unread = {}  # keyword -> where it is first
         self.assembly = Part("Assembly")
 
     def read(self, path, depth, before):
         """Reads all keywords of a file and of the files it includes. before: the keyword and the
-        options that the first data lines belong to, or None. Raises InputError."""
-        for keyword, options, data, where in _keywords(path, before):
+        options that the first data lines belong to, or None. Returns the same for the lines that
+        follow. Raises InputError."""
+        for keyword, options, data, where in keywords(path, before):
             if keyword == "INCLUDE":
                 if depth > 9 or not options.get("INPUT"):
                     raise InputError(f"{where}: *INCLUDE needs INPUT=FILE, nested at most ten deep")
-                self.read(path.parent / options["INPUT"], depth + 1, before)
-                continue
+                before = self.read(path.parent / options["INPUT"], depth + 1, before)
+                if not data.lines:
+                    continue
+                keyword, options = before or (keyword, options)
             before = keyword, options
             if file := options.get("INPUT"):
                 if data.lines:
                     raise InputError(f"{where}: *{keyword} has both INPUT and data lines")
                 other = path.parent / file
-                data = _Data(other, 1, _lines(other))
+                data = Data(other, 1, lines_of(other))
             if keyword in GENERATING:
                 raise InputError(
                     f"{where}: *{keyword} is not supported; write all nodes and elements"
                 )
             if read := getattr(self, "_read_" + keyword.lower().replace(" ", "_"), None):
                 read(options, data, where)
+            elif not keyword.startswith(("END ", "HEADING")):
+                self.unread.setdefault(keyword, where)
+        return before
 
     def _read_part(self, options, data, where):
+        name = options.get("NAME", "").upper()
+        if name in self.parts:
+            raise InputError(f"{where}: *PART: '{name}' is given twice; names must differ")
         self.part = self.parts[options.get("NAME", "").upper()] = Part(options.get("NAME", ""))
 
     def _read_assembly(self, options, data, where):
@@ -118,9 +89,13 @@ class _Reader:
         if not name or source is None:
             known = ", ".join(part.name for part in self.parts.values()) or "none"
             raise InputError(f"{where}: *INSTANCE needs NAME= and PART=, of {known}")
+        if self.part in self.parts.values():
+            raise InputError(f"{where}: *INSTANCE: parts hold no instances; close *PART before it")
         if name.upper() in [part.name.upper() for part in self.instances]:
             raise InputError(f"{where}: *INSTANCE: '{name}' is given twice; names must differ")
-        rows = [[_real(at, field) for field in fields if field] for at, fields in data.fields()]
+        rows = [
+            [real_number(at, field) for field in fields if field] for at, fields in data.fields()
+        ]
         if [len(row) for row in rows] not in ([], [3], [3, 7]):
             raise InputError(
                 f"{where}: *INSTANCE: a line of three numbers (translation) and one of seven "
@@ -147,7 +122,7 @@ class _Reader:
     def _read_node(self, options, data, where):
         if options.get("SYSTEM", "R").upper() != "R":
             raise InputError(f"{where}: *NODE, SYSTEM: rectangular coordinates are required")
-        table, ends = data.numbers(float, _real)
+        table, ends = data.numbers(float, real_number)
         whole = (table[::4] == np.round(table[::4])) & (abs(table[::4]) < 2**53)
         if (np.diff(ends, prepend=0) == 4).all() and whole.all():
             table = table.reshape(-1, 4)
@@ -163,8 +138,8 @@ class _Reader:
                         f"{place}: {', '.join(fields)!r}: a node needs an id and three coordinates"
                     )
                 short += [place] if len(fields) == 3 or not fields[3] else []
-                ids.append(_whole(place, fields[0]))
-                xyz = [_real(place, field) for field in fields[1:4]]
+                ids.append(whole_number(place, fields[0]))
+                xyz = [real_number(place, field) for field in fields[1:4]]
                 points.append(xyz + [0.0] * (3 - len(xyz)))
             if short:
                 rule = "have fewer than three coordinates, the first here; the missing ones are 0"
@@ -179,7 +154,7 @@ class _Reader:
         if not kind:
             raise InputError(f"{where}: *ELEMENT needs TYPE=")
         brick, digits = BRICK.fullmatch(kind), NODES.match(kind)
-        numbers, ends = data.numbers(np.int64, _whole)
+        numbers, ends = data.numbers(np.int64, whole_number)
         width = 1 + EXCEPTIONS.get(digits[1], int(digits[1])) if digits else 0
         starts = np.concatenate([[0], ends[:-1]])
         wanted = np.arange(0, len(numbers), width) if width else starts
@@ -227,16 +202,17 @@ class _Reader:
             if "" in fields:
                 raise InputError(f"{place}: *{kind}: a member is missing between two commas")
             if "GENERATE" in options:
-                ends = [_whole(place, field) for field in fields]
+                ends = [whole_number(place, field) for field in fields]
                 step = ends[2] if len(ends) == 3 else 1
                 if not 2 <= len(ends) <= 3 or step < 1 or ends[1] < ends[0]:
                     raise InputError(f"{place}: GENERATE needs first, last, and a positive step")
                 entries = [range(ends[0], ends[1] + 1, step)]
             elif all(field.isdigit() for field in fields):
-                entries = [np.array([_whole(place, f) for f in fields], dtype=np.int64)]
+                entries = [np.array([whole_number(place, f) for f in fields], dtype=np.int64)]
             else:
                 entries = [
-                    np.array([_whole(place, f)]) if f.lstrip("+-").isdigit() else f for f in fields
+                    np.array([whole_number(place, f)]) if f.lstrip("+-").isdigit() else f
+                    for f in fields
                 ]
             self.part.add(kind, name, place, *entries, instance=instance)
 
@@ -255,8 +231,28 @@ class _Reader:
         self.part.add("SURFACE", name, where)
         for place, (target, *more) in data.fields():
             label = more[0].upper() if more and kind == "ELEMENT" else kind.removeprefix("ELEMENT")
-            entry = np.array([_whole(place, target)]) if target.isdigit() else target
+            entry = np.array([whole_number(place, target)]) if target.isdigit() else target
             self.part.add("SURFACE", name, place, (label, entry))
+
+    def _ignored(self):
+        """Notes on the keywords that are not read, and on elements that have no volume."""
+        known = [name[6:].upper().replace("_", " ") for name in dir(self) if name[:6] == "_read_"]
+        words = []
+        for keyword, where in self.unread.items():
+            near = difflib.get_close_matches(keyword, known, 1, 0.8)
+            hint = f", did you mean *{near[0]}?" if near else ""
+            words.append(f"*{keyword} ({where.rpartition('/')[2]}{hint})")
+        if words:
+            rule = "materials, constraints, ties and loads are given by the case"
+            yield f"not read: {', '.join(words)}; {rule}"
+        kinds = Counter()
+        for part in [self.model, self.assembly, *self.instances]:
+            for block in part.blocks:
+                if block.dimension < 3 and not block.kind.startswith(SURFACES):
+                    kinds[block.kind] += len(block.ids)
+        if kinds:
+            words = ", ".join(f"{count} of type {kind}" for kind, count in kinds.items())
+            yield f"elements that are no hexahedra define sets, without stiffness or mass: {words}"
 
     def mesh(self, path):
         """The ForeignMesh. Raises InputError where a set names what does not exist."""
@@ -307,7 +303,7 @@ class _Reader:
             sets,
             element_sets=element_sets,
             scopes=names,
-            notes=self.notes,
+            notes=[*self._ignored(), *self.notes],
         )
 
 
@@ -341,55 +337,3 @@ def _joined(blocks):
         )
         for (kind, dimension, _), some in alike.items()
     ]
-
-
-def _lines(path):
-    """The lines of a text, whatever ends them. Raises InputError."""
-    text = content(path).decode("utf-8", "replace")
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-
-
-def _keywords(path, before):
-    """(keyword, options, _Data, place) one by one. before: as for _Reader.read."""
-    lines = _lines(path)
-    at = [i for i, line in enumerate(lines) if "*" in line and re.match(r"\s*\*(?!\*)", line)]
-    data = _Data(path, 1, lines[: at[0] if at else len(lines)])
-    if data.lines:
-        place, fields = next(data.fields())
-        if before is None:
-            text = ", ".join(fields)[:40]
-            raise InputError(f"{place}: {text!r} comes before the first *KEYWORD")
-        yield *before, data, place
-    for start, end in zip(at, [*at[1:], len(lines)]):
-        line, first = lines[start].strip(), start + 1
-        # The keyword's line is continued.
-        while line.endswith(",") and first < end and lines[first].strip()[:1].isalpha():
-            line, first = line + lines[first].strip(), first + 1
-        yield *_parsed(line), _Data(path, first + 1, lines[first:end]), f"{path}:{start + 1}"
-
-
-def _parsed(line):
-    """The keyword of a line in capitals, and its options; names keep their case."""
-    words = re.findall(r'(?:[^,"]|"[^"]*")+', line[1:])
-    options = {}
-    for word in words[1:]:
-        key, _, value = word.partition("=")
-        options[key.strip().upper()] = value.strip().strip('"')
-    return " ".join(words[0].upper().split()) if words else "", options
-
-
-def _whole(place, text):
-    try:
-        number = int(text)
-        if abs(number) < 2**63:
-            return number
-    except ValueError:
-        pass
-    raise InputError(f"{place}: {text!r} must be a whole number")
-
-
-def _real(place, text):
-    try:
-        return float(text.upper().replace("D", "E")) if text else 0.0
-    except ValueError:
-        raise InputError(f"{place}: {text!r} must be a number") from None

@@ -132,6 +132,8 @@ def _ending(path, allowed):
     """The suffix of an existing file, in lower case. Raises InputError."""
     if path.suffix.lower() not in allowed:
         raise InputError(f"{path}: ending '{path.suffix}'; allowed are {', '.join(allowed)}")
+    if path.suffix.lower() == ".gz" and path.stem[-4:].lower() != ".nii":
+        raise InputError(f"{path}: is packed; unpack it with gunzip; only .nii.gz is read as it is")
     try:
         with open(path, "rb"):
             pass

@@ -1,5 +1,6 @@
 """Meshes as other programs describe them, with their own numbering, and their conversion."""
 
+import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,6 +10,7 @@ from common.hexahedron import LEXICOGRAPHIC
 from exchange import orientation
 
 HEXAHEDRON = "hexahedron"
+MOST = 2**63 - 1  # the largest whole number
 SHOWN = 3  # of faulty items listed in a message
 SCOPE = 1 << 40  # numbers of instance i begin at i SCOPE, where a file has several
 
@@ -255,29 +257,66 @@ def content(path):
     return data.removeprefix(b"\xef\xbb\xbf")
 
 
+def decoded(data):
+    """The text of bytes: UTF-8, else the Western European encoding of Windows."""
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", "replace")
+
+
 class NotNumber(ValueError):
     """Of a word that is no number; at: its place among the words."""
 
-    def __init__(self, word, kind, at):
+    def __init__(self, word, what, at):
         text = word.decode("utf-8", "replace") if isinstance(word, bytes) else word
-        super().__init__(f"{text[:40]!r} is not a {'whole ' if kind[0] == 'i' else ''}number")
+        super().__init__(f"{text[:40]!r} is not a {what}")
         self.at = at
 
 
-def as_numbers(words, kind):
-    """Words of a text as an array (n,) of "f8" or "i8". Raises NotNumber."""
-    try:
-        return np.array(words, dtype=kind)
-    except (ValueError, OverflowError):
-        for at, word in enumerate(words):
-            try:
-                if kind[0] == "f" or abs(int(word)) < 2**63:
-                    float(word)
-                    continue
-            except ValueError:
-                pass
-            raise NotNumber(word, kind, at) from None
-        raise
+def word_starts(data):
+    """Where the words of a text of bytes begin, (n,)."""
+    printed = np.frombuffer(data, "u1") > ord(" ")
+    return np.flatnonzero(printed & ~np.append(False, printed[:-1]))
+
+
+def parsed(text, kind, separator):
+    """The numbers (n,) of a text, as "f8" or "i8"; none where another word is among them."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            return np.fromstring(text, kind, sep=separator)
+        except DeprecationWarning:
+            return np.empty(0, kind)
+
+
+def as_numbers(text, kind):
+    """All numbers (n,) of a text, as "f8" or "i8". Raises NotNumber."""
+    data = text.encode() if isinstance(text, str) else bytes(text)
+    found = parsed(data, kind, " ")
+    # NumPy takes 1-2 for two numbers, and the largest number for larger ones.
+    if len(found) == len(word_starts(data)) and (kind[0] == "f" or (abs(found) < MOST).all()):
+        return found
+    read, what = (float, "number") if kind[0] == "f" else (int, "whole number")
+    numbers = []
+    for at, word in enumerate(data.split()):
+        try:
+            numbers.append(read(word))
+            if word.isascii() and b"_" not in word and (kind[0] == "f" or abs(numbers[-1]) < MOST):
+                continue
+        except ValueError:
+            pass
+        raise NotNumber(word, what, at)
+    return np.array(numbers, dtype=kind)
+
+
+def fitting(values, kind):
+    """Whole numbers (n,) as a smaller type. Raises NotNumber for one that it cannot hold."""
+    found = values.astype(kind)
+    if (found != values).any():
+        at = int(np.flatnonzero(found != values)[0])
+        raise NotNumber(str(values[at]), f"number of type {found.dtype}", at)
+    return found
 
 
 def _count(number, word):

@@ -11,7 +11,8 @@ import re
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh, NotNumber, as_numbers, content
+from exchange.foreign_mesh import HEXAHEDRON, MOST, Block, ForeignMesh, NotNumber
+from exchange.foreign_mesh import as_numbers, content, decoded
 
 # Gmsh's number of an element type: name, dimension, nodes.
 KINDS = {
@@ -63,8 +64,8 @@ def read(path):
     names = _names(path, sections.get("PhysicalNames", _Section()))
     order = _byte_order(path, sections["MeshFormat"]) if binary else None
 
-    def numbers(section):
-        return _Numbers(path, section, sections[section], order, words[2])
+    def numbers(section, kind="f8"):
+        return _Numbers(path, section, sections[section], order, words[2], kind)
 
     if version == "4.1":
         return _read_4(numbers, names, "Entities" in sections)
@@ -72,14 +73,21 @@ def read(path):
 
 
 class _Numbers:
-    """The numbers of a section, one after the other, of text or bytes."""
+    """The numbers of a section, one after the other, of text or bytes.
 
-    def __init__(self, path, section, data, order, size):
+    kind: "i8" if those of a text are whole, else "f8".
+    """
+
+    def __init__(self, path, section, data, order, size, kind):
         self.path, self.section, self.first = path, section, data.first
         self.order, self.position = order, 0
-        self.data = data if order else data.split()
         self.text = b"" if order else data
         self.size = "i8" if size == b"8" else "i4"
+        try:
+            self.data = data if order else as_numbers(data, kind)
+        except NotNumber as error:
+            self.position = error.at
+            raise self.wrong(f"is damaged: {error}") from error
 
     def wrong(self, reason):
         """The InputError of this reason, with the line of a text."""
@@ -105,18 +113,19 @@ class _Numbers:
         self.position = end
         if self.order:
             return np.frombuffer(found, self.order + kind).astype(kind)
-        try:
-            return as_numbers(found, kind[0] + "8")
-        except NotNumber as error:
-            self.position += error.at - count
-            raise self.wrong(f"is damaged: {error}") from error
+        if kind[0] == "i" and self.data.dtype.kind == "f":
+            wrong = np.flatnonzero((found != np.round(found)) | ~(abs(found) < 2**53))
+            if wrong.size:
+                self.position += int(wrong[0]) - count
+                raise self.wrong(f"is damaged: '{found[wrong[0]]}' is not a whole number")
+        return found.astype(kind[0] + "8", copy=False)
 
     def end(self, count, announced, things):
         """Raises InputError unless as many things were read as announced, and nothing is left."""
         if count != announced:
             raise self.wrong(f"announces {announced} {things}, but holds {count}")
         left = self.data[self.position :]
-        if left.strip() if self.order else left:
+        if left.strip() if self.order else len(left):
             raise self.wrong(f"does not end behind its {announced} {things}")
 
     def kind(self, number):
@@ -144,6 +153,8 @@ def _sections(path, data):
         if end < 0:
             rule = f"${name} has no $End{name}: the file is cut off or damaged"
             raise InputError(f"{path}:{line}: {rule}")
+        if name in sections and not name.endswith("Data"):
+            raise InputError(f"{path}:{line}: ${name} is given twice; one is required")
         sections[name] = _Section(data[begin.end() : end])
         sections[name].first = line
         position = end + 4 + len(begin[1])
@@ -160,7 +171,7 @@ def _byte_order(path, header):
 
 def _names(path, section):
     """(dimension, tag) -> name of the physical groups. Raises InputError."""
-    names, lines = {}, section.decode("utf-8", "replace").splitlines()
+    names, lines = {}, decoded(section).splitlines()
     for number, line in enumerate(lines[1:], section.first + 2):
         entry = re.fullmatch(r'\s*([0-3])\s+(-?\d+)\s+"([^"]+)"\s*', line)
         if not entry:
@@ -213,40 +224,60 @@ def _read_2(numbers, names):
             raise nodes.wrong("ends too early: it is cut off or damaged")
         table = np.frombuffer(nodes.data, record, count, nodes.position)
         nodes.position += table.nbytes
-        ids, points = table["id"], table["x"].astype(float)
+        node_ids, points = table["id"], table["x"].astype(float)
     else:
         count = int(nodes.take(1)[0])
         table = nodes.take(4 * count, "f8").reshape(-1, 4)
-        ids, points = table[:, 0], table[:, 1:]
-        if not (ids == np.round(ids)).all():
+        node_ids, points = table[:, 0], table[:, 1:]
+        if not (node_ids == np.round(node_ids)).all():
             raise nodes.wrong("has a node whose id is not a whole number")
-    nodes.end(len(ids), count, "nodes")
-    source = numbers("Elements")
+    nodes.end(len(node_ids), count, "nodes")
+    source = numbers("Elements", "i8")
     announced = left = _line(source) if binary else int(source.take(1)[0])
-    found = {}  # (kind, tag of the group) -> rows of id and nodes; ids of repetitions are not kept
-    known = {}
+    found = {}  # kind -> tables of id, tag of the group, and nodes
+    several = 1
     while left > 0:
         if binary:
-            number, several, n_tags = source.take(3)
-            kind = source.kind(int(number))
+            number, several, n_tags = source.take(3).tolist()
+            if several < 1:
+                raise source.wrong(f"has a block of {several} elements")
+            kind = source.kind(number)
             rows = source.take(several * (1 + n_tags + kind[2])).reshape(several, -1)
         else:
-            element, number, n_tags = source.take(3)
-            kind, several = source.kind(int(number)), 1
-            rest = source.take(int(n_tags) + kind[2])
-            rows = np.concatenate([[element], rest])[None, :]
-        if several < 1:
-            raise source.wrong(f"has a block of {several} elements")
-        left -= int(several)
-        for row in rows.tolist():
-            corners = tuple(row[1 + n_tags :])
-            first = known.setdefault((kind, corners), row[0])
-            found.setdefault((kind, row[1] if n_tags else 0), []).append((first, *corners))
+            _, number, n_tags = source.take(3).tolist()
+            kind = source.kind(number)
+            source.position -= 3
+            # As many rows of this kind as follow, but at most twice as many as the last time.
+            width = 3 + max(0, n_tags) + kind[2]
+            most = min(2 * several, left, max(1, (len(source.data) - source.position) // width))
+            rows = source.take(most * width).reshape(most, width)
+            alike = (rows[:, 1:3] == (number, n_tags)).all(axis=1)
+            several = most if alike.all() else int(alike.argmin())
+            source.position -= (most - several) * width
+            rows = np.delete(rows[:several], (1, 2), axis=1)
+        left -= several
+        tags = rows[:, 1] if n_tags > 0 else np.zeros(several, np.int64)
+        table = np.column_stack([rows[:, 0], tags, rows[:, -kind[2] :]]).astype(np.int64)
+        found.setdefault(kind, []).append(table)
     source.end(announced - left, announced, "elements")
-    for (kind, tag), rows in found.items():
-        table = np.array(rows, dtype=np.int64)
-        elements.add(kind, table[:, 0], table[:, 1:], [tag])
-    return elements.mesh(ids, points)
+    for kind, tables in found.items():
+        table = np.concatenate(tables)
+        ids, nodes = table[_first_alike(table[:, 2:]), 0], table[:, 2:]
+        tags, first = np.unique(table[:, 1], return_index=True)
+        for tag in tags[np.argsort(first)]:
+            inside = table[:, 1] == tag
+            elements.add(kind, ids[inside], nodes[inside], [tag])
+    return elements.mesh(node_ids, points)
+
+
+def _first_alike(rows):
+    """The first of the rows (m, k) of whole numbers that equal each of them, (m,)."""
+    # A sum of products stands for a row; that equal sums are of equal rows is checked.
+    keys = rows @ np.random.default_rng(0).integers(-MOST, MOST, rows.shape[1])
+    _, first, same = np.unique(keys, return_index=True, return_inverse=True)
+    if not (rows[first[same]] == rows).all():
+        _, first, same = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    return first[same]
 
 
 def _line(numbers):
@@ -271,7 +302,7 @@ def _read_4(numbers, names, has_entities):
         width = 3 + (dimension if parametric else 0)
         points.append(source.take(width * count, "f8").reshape(count, width)[:, :3])
     source.end(sum(map(len, ids)), n_nodes, "nodes")
-    source, n_found = numbers("Elements"), 0
+    source, n_found = numbers("Elements", "i8"), 0
     n_blocks, n_elements, _, _ = source.take(4, "size")
     for _ in range(n_blocks):
         dimension, entity, number = source.take(3)

@@ -39,18 +39,45 @@ def read_nifti(path, spacing):
         with nibabel.imageglobals.ErrorLevel(30):  # and not repaired
             image = nibabel.load(path)
         labels, affine = np.asanyarray(image.dataobj), image.affine
-        unit = {"meter": 1.0, "micron": 1e-6}.get(image.header.get_xyzt_units()[0], MILLIMETRES)
+        name = image.header.get_xyzt_units()[0]
+        unit = {"meter": 1.0, "micron": 1e-6}.get(name, MILLIMETRES)
     except Exception as error:  # a library may fail in any way on a damaged file
         reason = f"code {error} in its header is unknown" if isinstance(error, KeyError) else error
         raise InputError(f"{path}: cannot be read as NIfTI: {reason}") from error
     # The affine map places the middle of voxel (i, j, k) at (i, j, k).
     map_, origin = unit * affine[:3, :3], unit * affine[:3, 3]
     mesh = _voxels(path, labels, map_, origin - map_ @ (0.5, 0.5, 0.5))
+    mesh.notes += _doubts(image.header, affine, name)
     size = image.dataobj.offset + labels.size * image.get_data_dtype().itemsize
     if path.suffix.lower() == ".nii" and (left := path.stat().st_size - size):
         shape = " x ".join(map(str, labels.shape))
         mesh.notes.append(f"{left} bytes follow its {shape} voxels: does the header fit the file?")
     return mesh
+
+
+def _doubts(header, affine, unit):
+    """Notes on a NIfTI header that leaves open where and how large its voxels are."""
+    if unit == "unknown":
+        yield "the header names no unit of length; mm is assumed"
+        unit = "mm"
+    others, sizes = [], np.array(header.get_zooms()[:3], float)
+    if header["qform_code"] > 0:
+        try:
+            others.append(header.get_qform())
+        except Exception as error:  # as above
+            yield f"its qform is damaged: {error}"
+    if not header["qform_code"] and not header["sform_code"]:
+        yield (
+            "has neither sform nor qform, hence no place and no handedness: its middle is put at "
+            "the origin, and x decreases with the first index"
+        )
+    elif header["sform_code"] > 0:
+        found = np.linalg.norm(affine[:3, :3], axis=0)
+        others.append(affine @ np.diag([*sizes / np.where(found > 0, found, 1), 1]))
+    ends = np.array([[0, 0, 0, 1], [*header.get_data_shape()[:3], 1]])
+    shift = max((abs((other - affine) @ ends.T).max() for other in others), default=0.0)
+    if shift > 0.1 * sizes.min():
+        yield f"sform, which is used, and qform or pixdim differ by {shift:.3g} {unit}"
 
 
 def _voxels(path, labels, map_, origin):

@@ -9,7 +9,7 @@ from urllib.parse import unquote
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import NotNumber, as_numbers, content
+from exchange.foreign_mesh import NotNumber, as_numbers, content, fitting, word_starts
 from exchange.vtu_reader import Grid
 
 TYPES = {"bit": "b", "char": "i1", "short": "i2", "int": "i4", "long": "i8", "float": "f4"}
@@ -37,7 +37,7 @@ class LegacyGrid(Grid):
             )
         self.binary = form == "BINARY"
         self.point_data, self.cell_data, self.into, self.rows = {}, {}, {}, None
-        self.points = self.offsets = self.connectivity = self.types = None
+        self.starts = self.points = self.offsets = self.connectivity = self.types = None
         while words := self.words():
             read = getattr(self, "read_" + words[0].lower(), None)
             try:
@@ -116,16 +116,19 @@ class LegacyGrid(Grid):
             if kind == "b":
                 return np.unpackbits(np.frombuffer(piece, "u1"))[:count]
             return np.frombuffer(piece, ">" + kind).astype(kind)
-        found = self.data[self.position :].split(None, count)
-        if len(found) < count:
-            raise self.wrong(f"{count} numbers are announced, {len(found)} follow: it is cut off")
-        rest = found.pop() if len(found) > count else b""
-        self.position = len(self.data) - len(rest)
+        if self.starts is None:
+            self.starts = np.append(word_starts(self.data), len(self.data))
+        first = int(np.searchsorted(self.starts, self.position))
+        if first + count >= len(self.starts):
+            follow = len(self.starts) - 1 - first
+            raise self.wrong(f"{count} numbers are announced, {follow} follow: it is cut off")
+        text = self.data[self.position : self.starts[first + count]]
+        self.position = int(self.starts[first + count])
         try:
-            values = as_numbers(found, "f8" if kind[0] == "f" else "i8")
+            values = as_numbers(text, "f8" if kind[0] == "f" else "i8")
+            return values if kind[0] == "f" else fitting(values, "u1" if kind == "b" else kind)
         except NotNumber as error:
             raise self.wrong(f"{count} numbers are announced, but {error}") from error
-        return values if kind[0] == "f" else values.astype("u1" if kind == "b" else kind)
 
     def keep(self, name, width, kind, rows=None):
         """Reads an array of points or of cells, or one that belongs to neither."""
@@ -138,14 +141,21 @@ class LegacyGrid(Grid):
             raise self.wrong(f"two arrays are named '{name}'")
         self.into[name] = values if width == 1 else values.reshape(rows, width)
 
+    def first(self, found):
+        """Raises InputError if a section was read already."""
+        if found is not None:
+            raise self.wrong("a grid has one section of this kind")
+
     def read_dataset(self, kind):
         if kind.upper() != "UNSTRUCTURED_GRID":
             raise self.wrong(f"it is of type {kind}; UNSTRUCTURED_GRID is required")
 
     def read_points(self, count, kind):
+        self.first(self.points)
         self.points = self.numbers(3 * int(count), kind).astype(float).reshape(-1, 3)
 
     def read_cells(self, count, size):
+        self.first(self.offsets)
         if words := self.follows("OFFSETS"):  # since version 5.0
             ends = self.numbers(count, words[1])
             if not (words := self.follows("CONNECTIVITY")) or not len(ends) or ends[0] != 0:
@@ -164,6 +174,7 @@ class LegacyGrid(Grid):
         self.connectivity = np.delete(table, starts[:-1])
 
     def read_cell_types(self, count):
+        self.first(self.types)
         self.types = self.numbers(count, "int")
 
     def read_point_data(self, count):

@@ -27,6 +27,8 @@ KINDS = {
 }
 VOXEL = 11
 
+GHOSTS = "vtkGhostType"  # VTK's array of cells that repeat others, or are not shown
+
 # An array with more values does not hold labels, but perhaps element numbers.
 MOST_LABELS = 1000
 
@@ -41,6 +43,12 @@ def read(path):
     NAME-LABEL for each.
     """
     grid = _grid(path)
+    hidden = np.count_nonzero(grid.cell_data.pop(GHOSTS, 0))
+    if hidden:
+        raise InputError(
+            f"{path}: {hidden} of {len(grid.types)} cells are ghosts or hidden by '{GHOSTS}'; "
+            "remove them with the program that made the file, or the array if they count"
+        )
     sizes, starts = np.diff(grid.offsets, prepend=0), np.append(0, grid.offsets)[:-1]
     blocks = []
     for number in np.unique(grid.types).tolist():
@@ -61,7 +69,11 @@ def read(path):
     element_sets = {}
     for name, data in grid.cell_data.items():
         if data.ndim == 1 and data.dtype.kind in "biu":
-            element_sets |= _labelled(name, data)
+            found = _labelled(name, data)
+            if twice := found.keys() & element_sets.keys():
+                name = next(iter(twice))[1]
+                raise InputError(f"{path}: two cell arrays define element set '{name}'; rename one")
+            element_sets |= found
     ids = np.arange(len(grid.points))
     return ForeignMesh(ids, grid.points, blocks, sets, element_sets=element_sets)
 

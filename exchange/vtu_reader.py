@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import as_numbers, content
+from exchange.foreign_mesh import as_numbers, content, fitting
 
 KINDS = {"Int": "i", "UInt": "u", "Float": "f"}
 APPENDED = re.compile(rb"<AppendedData([^>]*)>\s*_")
@@ -154,8 +154,8 @@ class Grid:
         text = (element.text or "") + "".join(child.tail or "" for child in element)
         try:
             if form == "ascii":
-                found = as_numbers(text.split(), "f8" if kind.kind == "f" else "i8")
-                return found if kind.kind == "f" else found.astype(kind.newbyteorder("="))
+                found = as_numbers(text, "f8" if kind.kind == "f" else "i8")
+                return found if kind.kind == "f" else fitting(found, kind.newbyteorder("="))
             if form == "binary":
                 data, raw = "".join(text.split()).encode("ascii"), False
             elif form == "appended":

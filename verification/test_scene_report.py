@@ -1,4 +1,4 @@
-"""What `run` and `mesh` report before a run: free motions, parts, seams, sets, units."""
+"""What commands report of a body before they compute: free motions, parts, seams, sets, units."""
 
 import re
 
@@ -10,9 +10,11 @@ CORNERS = [(x, y, z) for z in (0.0, 0.1) for y in (0.0, 0.1) for x in (0.0, 0.1)
 ORDER = (1, 2, 4, 3, 5, 6, 8, 7)
 
 
-def two_cubes(gap):
-    """An Abaqus input: a cube of .1 m on another, each with its own nodes, `gap` m apart."""
+def two_cubes(gap, unit=1.0):
+    """An Abaqus input: a cube of .1 m on another, each with its own nodes, `gap` m apart; in
+    multiples of `unit`."""
     points = CORNERS + [(x, y, z + 0.1 + gap) for x, y, z in CORNERS]
+    points = [(x * unit, y * unit, z * unit) for x, y, z in points]
     rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(points, 1)]
     cells = [
         ", ".join(str(n) for n in (e + 1, *(8 * e + corner for corner in ORDER))) for e in (0, 1)
@@ -115,6 +117,57 @@ def test_a_seam_is_warned_of_and_each_part_is_held_or_named(tmp_path, gap):
     said = refusal(case)
     assert "2 elements in 2 parts; 4 pairs of boundary nodes lie at one place" in said
     assert "nothing holds 1 of 2 elements around (0.05, 0.05, 0.15) m against every" in said
+
+
+@pytest.mark.parametrize(
+    "words, of",
+    [
+        (["run"], ""),
+        (["mesh", "-o", "out.h5"], ""),
+        (["choose", "--tolerance", "90%", "-m", "tl-full"], ""),
+        (["verify", "--no-costs"], "block: "),
+        (["bench", "-m", "tl-full", "--repetitions", "1", "--threads", "1"], "block: "),
+        (["bench", "--rest", "-m", "tl-full"], "block: "),
+        (
+            [
+                "stability",
+                "--map",
+                "kappa",
+                "--values",
+                "kappa=0.1",
+                "--methods",
+                "tl-perturbation",
+            ],
+            "block: ",
+        ),
+        (["score", "answer.h5"], "block: "),
+    ],
+)
+def test_every_command_that_computes_with_a_body_says_what_it_understood(tmp_path, words, of):
+    """A seam, two parts, and 20 m of what is probably 20 mm."""
+    (tmp_path / "seam.inp").write_text(two_cubes(0.0, 100.0))
+    text = on_mesh("seam.inp").replace("[0.02, 0.0, 0.01]", "[0.0, 0.0, 0.02]")
+    (tmp_path / "seam.toml").write_text(text.replace("[0.2, 0.2]", "[20.0, 20.0]"))
+    case = ["--case", "seam.toml"] if "score" in words else ["seam.toml"]
+    if "score" in words:
+        sandglass("run", "seam.toml", "-o", "answer.h5", cwd=tmp_path, code=0)
+    # Nodes at one place cannot be told apart by their coordinates, so `score` refuses the answer.
+    code = 2 if "score" in words else 0
+    outcome = sandglass(words[0], *case, *words[1:], cwd=tmp_path, code=code)
+    assert f"warning: {of}4 pairs of boundary nodes lie at one place" in outcome.stderr
+    assert f"warning: {of}the mesh is 20 m long, and files are read in m" in outcome.stderr
+    assert f"{of}parts: 1 element, " in outcome.stdout
+
+
+def test_a_rule_that_replaces_a_set_of_the_file_is_noted(tmp_path):
+    for name in ("head", "HEAD"):  # the second is another name
+        (tmp_path / "a.inp").write_text(two_cubes(0.0) + f"*NSET, NSET={name}\n1, 2\n")
+        (tmp_path / "a.toml").write_text(on_mesh("a.inp").replace("0.02, 0.0, 0.01", "0, 0, 0.02"))
+        outcome = sandglass("run", tmp_path / "a.toml", code=0)
+        note = (
+            "note: sets.head (4 nodes) replaces the set of that name in the mesh's file (2 nodes)"
+        )
+        assert (note in outcome.stdout) == (name == "head")
 
 
 def test_a_thin_element_is_no_seam(tmp_path):

@@ -34,7 +34,7 @@ def read_text(tmp_path, capsys, text):
         CUBES.replace(" 5, 6, 7, 8\n", " 5,\n 6, 7, 8\n"),
         CUBES.replace("\n2, 5, 6", "\n*ELEMENT, ELSET=tissue, TYPE=C3D8I\n2, 5, 6"),
         "*HEADING\nany, words\n*PART, NAME=p\n" + CUBES + "*END PART\n*INSTANCE, NAME=a, PART=p\n",
-        CUBES + "*ELEMENT, TYPE=S4R\n7, 1, 2, 3, 4\n*STEP\n*STATIC\n0.1, 1.\n*END STEP\n",
+        CUBES + "*ELEMENT, TYPE=SFM3D4\n7, 1, 2, 3, 4\n",
     ],
 )
 def test_the_same_mesh_however_written(tmp_path, capsys, text):
@@ -82,7 +82,26 @@ def test_the_same_mesh_however_written(tmp_path, capsys, text):
 def test_sets(tmp_path, capsys, text, expected):
     _, _, sets, warnings = read_text(tmp_path, capsys, CUBES + text)
     del sets["tissue"]
-    assert sets == expected and not warnings
+    assert sets == expected
+    assert not warnings or "elements that are no hexahedra define sets, without" in warnings
+
+
+def test_what_is_ignored_is_named(tmp_path, capsys):
+    """Keywords by their first lines, misspelt ones with the right one; elements by their type."""
+    text = CUBES + "*ELEMENT, TYPE=S4R\n7, 1, 2, 3, 4\n*ELEMENT, TYPE=MASS\n8, 1\n9, 2\n"
+    text += "*N SET, NSET=a\n1\n*Tie, name=t\na, b\n*STEP\n*Static\n1., 1.\n*STEP\n*END STEP\n"
+    *_, sets, warnings = read_text(tmp_path, capsys, text)
+    assert set(sets) == {"tissue"} and warnings.count("warning") == 2
+    assert (
+        "not read: *N SET (cubes.inp:22, did you mean *NSET?), *TIE (cubes.inp:24), "
+        "*STEP (cubes.inp:26), *STATIC (cubes.inp:27); materials, constraints, ties and loads"
+    ) in warnings
+    assert "define sets, without stiffness or mass: 1 of type S4R, 2 of type MASS" in warnings
+
+
+def test_names_in_the_encoding_of_windows(tmp_path, capsys):
+    (tmp_path / "cubes.inp").write_bytes((CUBES + "*NSET, NSET=Fuß\n1\n").encode("cp1252"))
+    assert read(capsys, tmp_path / "cubes.inp")[2]["Fuß"] == [0]
 
 
 @pytest.mark.parametrize(
@@ -118,18 +137,23 @@ def test_nodes_with_two_coordinates_are_warned_of(tmp_path, capsys):
 def test_what_gmsh_writes(tmp_path, capsys):
     (tmp_path / "block.inp").write_bytes((DATA / "block.inp").read_bytes())
     points, cells, sets, warnings = read(capsys, tmp_path / "block.inp")
-    assert cells.shape == (12, 8) and not warnings
+    assert cells.shape == (12, 8) and warnings.count("warning") == 1 and "of type T3D2" in warnings
     assert sets["foot"] == np.flatnonzero(points[:, 2] == 0).tolist() and len(sets["edge"]) == 3
 
 
 def test_included_files(tmp_path, capsys):
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / "nodes.inc").write_text(NODES)
+    (tmp_path / "parts" / "some.inc").write_text("".join(NODES.splitlines(True)[:5]))
+    (tmp_path / "parts" / "some.txt").write_text("".join(NODES.splitlines(True)[1:5]))
     (tmp_path / "parts" / "nodes.txt").write_text(NODES.removeprefix("*NODE\n"))
     for start in (
         "*INCLUDE, INPUT=parts/nodes.inc\n",
         "*NODE, INPUT=parts/nodes.txt\n",
         "*NODE\n*INCLUDE, INPUT=parts/nodes.txt\n",
+        # Data lines that follow belong to the last keyword before them, wherever it is.
+        "*NODE\n*INCLUDE, INPUT=parts/some.txt\n" + "".join(NODES.splitlines(True)[5:]),
+        "*INCLUDE, INPUT=parts/some.inc\n" + "".join(NODES.splitlines(True)[5:]),
     ):
         points, cells, _, _ = read_text(tmp_path, capsys, start + ELEMENTS)
         assert (points == POINTS).all() and (cells == CELLS).all()
@@ -212,6 +236,18 @@ def test_messages_name_the_instance(tmp_path, capsys):
             ":13: '12': a node needs an id and three coordinates",
         ),
         (CUBES.replace("12, 0., 1., 2.", "12, 0., 1., 2., 3."), ":13: .*: a node needs an id"),
+        # NumPy ends a text at such words, or takes them for numbers.
+        (CUBES.replace("12, 0., 1., 2.", "12, 0., 1., 2.0-1"), ":13: '2.0-1' must be a number"),
+        (CUBES.replace("12, 0., 1., 2.", "12, 0., 1., 1_0"), ":13: '1_0' must be a number"),
+        (CUBES.replace("11, 12", "11, 12-3"), ":16: '12-3' must be a whole number"),
+        (CUBES.replace("11, 12", "11, 12.5"), ":16: '12.5' must be a whole number"),
+        (CUBES.replace("11, 12", "11, 1_2"), ":16: '1_2' must be a whole number"),
+        ("*PART, NAME=p\n*END PART\n*PART, NAME=P\n", ":3: .PART: 'P' is given twice"),
+        (
+            "*PART, NAME=p\n*END PART\n*PART, NAME=q\n*INSTANCE, NAME=i, PART=p\n",
+            ":4: .INSTANCE: parts hold no instances; close .PART before it",
+        ),
+        (NODES + "*ELEMENTS, TYPE=C3D8\n", "has no elements"),
         (CUBES.replace("12, 0., 1., 2.", "12, 0.,, 1., 2."), ":13: .*: a node needs an id and"),
         (CUBES + "*NSET, NSET=Foot\n1,, 2\n", ":18: .NSET: a member is missing between two"),
         (CUBES + "*SURFACE\n1, S1\n", ":17: .SURFACE needs a name: NAME="),
@@ -237,8 +273,8 @@ def test_messages_name_the_instance(tmp_path, capsys):
         (CUBES + "*PART, NAME=p\n*END PART\n*INSTANCE, NAME=i, PART=q\n", "PART=, of p"),
         ("*PART, NAME=p\n*END PART\n*PART, NAME=q\n*END PART\n", "parts p, q are not placed"),
         (
-            "*PART, NAME=p\n*INSTANCE, NAME=i, PART=p\n1, 2\n",
-            ":2: .INSTANCE: a line of three numbers .translation. and one of seven",
+            "*PART, NAME=p\n*END PART\n*INSTANCE, NAME=i, PART=p\n1, 2\n",
+            ":3: .INSTANCE: a line of three numbers .translation. and one of seven",
         ),
         ("*NODE, INPUT=none.txt\n", "none.txt: cannot be read: No such file"),
         ("*NODE, INPUT=cubes.inp\n1, 0., 0., 0.\n", ":1: .NODE has both INPUT and data lines"),

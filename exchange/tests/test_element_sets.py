@@ -87,6 +87,7 @@ def test_an_image_that_is_no_segmentation(tmp_path, capsys, labels, options, mes
 def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, message):
     nibabel = pytest.importorskip("nibabel")
     image = nibabel.Nifti1Image(LABELS, np.diag([1.0, 2.0, 3.0, 1.0]))
+    image.header.set_xyzt_units("mm")
     data = bytearray(image.to_bytes())
     if at is None:
         del data[-1]
@@ -97,6 +98,37 @@ def test_headers_of_nifti_that_do_not_fit_are_named(tmp_path, capfd, at, value, 
     code = convert.main(["mesh", str(tmp_path / "a.nii"), str(tmp_path / "b.h5")])
     said = "".join(capfd.readouterr())
     assert code == (0 if at == 42 else 2) and message in said and said.count("\n") == 1, said
+
+
+@pytest.mark.parametrize(
+    "sform, qform, unit, message",
+    [
+        (None, None, "mm", "has neither sform nor qform, hence no place and no handedness"),
+        ((1, 2, 3), (1, 2, 3), "unknown", "the header names no unit of length; mm is assumed"),
+        ((1, 2, 3), (1, 2, 2), "mm", "sform, which is used, and qform or pixdim differ by 2 mm"),
+        ((1, 2, 6), None, "mm", "sform, which is used, and qform or pixdim differ by 6 mm"),
+        ((1, 2, 3), (1, 2, 3), "mm", ""),
+        (None, (1, 2, 3), "mm", ""),
+    ],
+)
+def test_what_a_nifti_header_leaves_open_is_warned_of(
+    tmp_path, capsys, sform, qform, unit, message
+):
+    nibabel = pytest.importorskip("nibabel")
+    image = nibabel.Nifti1Image(LABELS, np.diag([1.0, 2.0, 3.0, 1.0]))
+    image.header.set_xyzt_units(unit)
+    for put, sizes in ((image.set_qform, qform), (image.set_sform, sform)):
+        put(np.diag([*(sizes or (1, 2, 3)), 1.0]), code=int(sizes is not None))
+    image.to_filename(tmp_path / "a.nii")
+    assert convert.main(["mesh", str(tmp_path / "a.nii"), str(tmp_path / "b.h5")]) == 0
+    said = capsys.readouterr().err
+    assert message in said and said.count("\n") == bool(message), said
+
+
+def test_a_packed_file_is_no_image(tmp_path, capsys):
+    (tmp_path / "a.inp.gz").write_bytes(b"")
+    assert convert.main(["mesh", str(tmp_path / "a.inp.gz"), str(tmp_path / "b.h5")]) == 2
+    assert "is packed; unpack it with gunzip" in capsys.readouterr().out
 
 
 def test_a_segmentation_is_a_body_of_several_materials(tmp_path):

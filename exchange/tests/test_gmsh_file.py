@@ -75,11 +75,33 @@ def edited(tmp_path, form, *changes):
         ("4.1", b"\n27 36 1 36\n", b"\n99999999999999999999 36 1 36\n", r"\$Nodes"),
         ("4.1", b"3 1 5 12", b"3 1 4 12", r"\$Elements|tetrahedron"),
         ("4.1", b"3 1 5 12", b"3 1 99 12", "Gmsh's type 99"),
+        ("4.1", b"3 1 5 12", b"3 1 5.5 12", r"\$Elements is damaged: '5.5' is not a whole number"),
+        ("4.1", b"\n27 36 1 36\n", b"\n27 36 1.5 36\n", r":\d+: \$Nodes is damaged: '1.5' is not"),
+        ("2.2", b"\n2 0.1 0 0\n", b"\n2 1_0 0 0\n", r":16: \$Nodes is damaged: '1_0' is not a n"),
+        ("2.2", b"$PhysicalN", b"$Nodes\n0\n$EndNodes\n$PhysicalN", r"\$Nodes is given twice"),
     ],
 )
 def test_damage_is_named(tmp_path, capsys, form, old, new, message):
     with pytest.raises(Refused, match=message):
         read(capsys, edited(tmp_path, form, (old, new)))
+
+
+def test_a_hexahedron_of_several_groups_is_one(tmp_path, capsys):
+    """Version 2.2 lists it again, with another id; in blocks of any length between other kinds."""
+    path = edited(tmp_path, "2.2")
+    head, tail = path.read_text().split("$Elements\n")
+    count, *lines = tail.split("$EndElements")[0].splitlines()
+    mixed = [line for pair in zip(lines[:30], reversed(lines[30:])) for line in pair]
+    mixed += lines[len(mixed) // 2 : len(lines) - len(mixed) // 2]
+    assert sorted(mixed) == sorted(lines) and int(count) == len(lines)
+    path.write_text(head + "\n".join(["$Elements", count, *mixed, "$EndElements", ""]))
+    points, cells, sets, _ = read(capsys, path)
+    assert len(cells) == 12 and sets == expected_sets(points)
+
+
+def test_names_in_the_encoding_of_windows(tmp_path, capsys):
+    path = edited(tmp_path, "4.1", (b'"foot"', '"Fuß"'.encode("cp1252")))
+    assert len(read(capsys, path)[2]["Fuß"]) == 9
 
 
 def test_groups_of_one_name_are_kept_apart(tmp_path, capsys):

@@ -139,6 +139,44 @@ def test_the_line_of_an_array_is_named(tmp_path, capsys):
         read(capsys, tmp_path / "a.vtu")
 
 
+@pytest.mark.parametrize(
+    "array, old, new, message",
+    [
+        ("types", "\n12\n12\n", "\n12\n268\n", "'268' is not a number of type uint8"),
+        ("connectivity", "\n11\n", "\n1_1\n", "'1_1' is not a whole number"),
+        ("connectivity", "\n11\n", "\n9223372036854775807\n", "is not a whole number"),
+        ("connectivity", "\n10\n11\n", "\n10-11\n", "'10-11' is not a whole number"),
+        ("connectivity", "\n11\n", "\n11.5\n", "'11.5' is not a whole number"),
+    ],
+)
+def test_numbers_that_python_or_a_narrow_type_would_change(
+    tmp_path, capsys, array, old, new, message
+):
+    path = write(tmp_path / "a.vtu", binary=False)
+    text = path.read_text().replace('"Int64" Name="types"', '"UInt8" Name="types"')
+    head, tail = text.split(f'Name="{array}"')
+    assert old in tail
+    path.write_text(f'{head}Name="{array}"' + tail.replace(old, new, 1))
+    with pytest.raises(Refused, match=f"array '{array}': .*{message}"):
+        read(capsys, path)
+
+
+@pytest.mark.parametrize(
+    "data, message",
+    [
+        (
+            {"vtkGhostType": [0, 1]},
+            "1 of 2 cells are ghosts or hidden by 'vtkGhostType'; rem",
+        ),
+        ({"mat": [1, 2], "mat-1": [0, 1]}, "two cell arrays define element set 'mat-1'; rename"),
+    ],
+)
+def test_cell_arrays_that_would_be_misread(tmp_path, capsys, data, message):
+    data = {name: [np.array(values, np.uint8)] for name, values in data.items()}
+    with pytest.raises(Refused, match=message):
+        read(capsys, write(tmp_path / "a.vtu", cell_data=data))
+
+
 LEGACY = """\
 # vtk DataFile Version 3.0
 two cubes
@@ -205,6 +243,8 @@ def test_a_legacy_file(tmp_path, capsys):
         ("SCALARS label int\n3\n7", "SCALARS label int\n3", ":23: .*2 numbers are .*cut off"),
         ("VECTORS u", "VECTORS left%20foot", "two arrays are named 'left foot'"),
         ("VECTORS u", "VEKTORS u", ":17: .*'VEKTORS' stands where a keyword is"),
+        ("CELL_TYPES 2\n", "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 2\n", ":10: .*one section"),
+        ("SCALARS label int\n3", "SCALARS label char\n300", "'300' is not a number of type int8"),
         ("CELLS 2 18", "METADATA\n\nCELLS 2 18", None),
     ],
 )

@@ -51,6 +51,35 @@ def test_a_mesh_that_goes_round_gives_the_same_answer(block, ending):
 
 
 @pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"cells": CELLS + 0.7}, "dataset '/mesh/cells' must hold integers"),
+        ({"sets/foot": [0.0, 1.0, 2.0, 3.7]}, "dataset '/mesh/sets/foot' must hold integers"),
+        ({"sets/foot": MASKS["foot"]}, "/mesh/sets/foot lists node 0 more than once"),
+        (
+            {"cells": [*CELLS, CELLS[0]]},
+            "elements 0 and 2 lie on the same side of their common face",
+        ),
+        (
+            {"cells": [CELLS[0]] * 2, "points": POINTS[:8], "sets/head": [4, 5, 6, 7]},
+            "elements 0 and 1 lie on the same side",
+        ),
+        # The same element that begins at another corner.
+        (
+            {"cells": [*CELLS, np.roll(CELLS[0].reshape(2, 4), 1, 1).ravel()]},
+            "elements 0 and 2 lie",
+        ),
+    ],
+)
+def test_a_file_of_our_own_form_that_would_be_misread(tmp_path, changes, message):
+    sets = {f"sets/{name}": np.flatnonzero(mask) for name, mask in MASKS.items()}
+    with h5py.File(tmp_path / "own.h5", "w") as file:
+        for name, data in ({"points": POINTS, "cells": CELLS} | sets | changes).items():
+            file["mesh/" + name] = data
+    refused("run", case_of(tmp_path, "own.h5"), message=message)
+
+
+@pytest.mark.parametrize(
     "mesh", ["block-2.2.msh", "block-4.1.msh", "block-4.1-binary.msh", "block.inp"]
 )
 def test_meshes_of_gmsh_run(tmp_path, mesh):

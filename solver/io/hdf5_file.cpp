@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "base/error.hpp"
@@ -268,6 +269,8 @@ FileArray<T> Hdf5File::read(const std::string& name) const {
       fmt::format("dataset '{}' is missing; this file is not from this program or its reference", name));
   const Identifier type(H5Dget_type(set.get()), H5Tclose);
   handle_->require(is_number(type), fmt::format("dataset '{}' must hold numbers", name));
+  handle_->require(std::is_floating_point_v<T> || H5Tget_class(type.get()) == H5T_INTEGER,
+                   fmt::format("dataset '{}' must hold integers", name));
   const Identifier space(H5Dget_space(set.get()), H5Sclose);
   handle_->require(H5Sget_simple_extent_type(space.get()) == H5S_SIMPLE,
                    fmt::format("dataset '{}' must be an array", name));

@@ -45,6 +45,12 @@ std::map<std::string, std::vector<int>> read_sets(const Hdf5File& file, const st
       set.push_back(static_cast<int>(member));
     }
     std::sort(set.begin(), set.end());
+    if (const auto twice = std::ranges::adjacent_find(set); twice != set.end()) {
+      throw InputError(fmt::format(
+          "{}: {} lists {} {} more than once; a set lists numbers from 0, each once (numpy.flatnonzero makes "
+          "it from a mask of 0 and 1)",
+          file.path().string(), dataset, what, *twice));
+    }
   }
   return sets;
 }

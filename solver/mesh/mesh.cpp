@@ -1,8 +1,12 @@
 #include "mesh/mesh.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "base/error.hpp"
 
 namespace sandglass {
 
@@ -40,8 +44,19 @@ std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) 
   std::vector<Quadrilateral> boundary;
   for (std::size_t f = 0; f < keys.size(); ++f) {
     const auto& near = by_first_node[at(keys[f][0])];
-    const auto same = [&](std::size_t other) { return keys[other] == keys[f]; };
-    if (std::count_if(near.begin(), near.end(), same) == 1) boundary.push_back(faces[f]);
+    std::size_t count = 0;
+    for (const std::size_t other : near) {
+      if (keys[other] != keys[f]) continue;
+      ++count;
+      // Elements on opposite sides of a face list its nodes in opposite directions.
+      const auto first = std::ranges::find(faces[other], faces[f][0]) - faces[other].begin();
+      if (other == f || faces[other][at(first + 1) % 4] != faces[f][1]) continue;
+      throw InputError(fmt::format(
+          "elements {} and {} lie on the same side of their common face, or share it with a third; elements "
+          "must not overlap",
+          f / local_faces.size(), other / local_faces.size()));
+    }
+    if (count == 1) boundary.push_back(faces[f]);
   }
   return boundary;
 }

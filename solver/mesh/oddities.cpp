@@ -48,26 +48,57 @@ SetShape shape_of(const Mesh& mesh, const std::vector<Quadrilateral>& boundary,
   return shape;
 }
 
-std::string cut_plane(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule) {
-  const double rounding = rounding_of(mesh), most = 0.02 * shortest_edge(mesh);
+namespace {
+
+/// Whether two nodes on both sides of an end of an interval along axis i are that close: of few rules, which
+/// saves the selection of the nodes.
+bool may_cut(const Mesh& mesh, std::size_t i, double end, double most) {
+  double below = -INFINITY, above = INFINITY;
+  for (const Vector& X : mesh.points) {
+    if (X[i] <= end) {
+      below = std::max(below, X[i]);
+    } else {
+      above = std::min(above, X[i]);
+    }
+  }
+  return above - below < most;
+}
+
+/// As `cut_planes`, for one rule.
+std::string cut_plane(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule,
+                      double rounding, double most) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!rule.within[i]) continue;
     for (const bool upper : {false, true}) {
       NodeSetRule others = rule;
       Interval& interval = *others.within[i];
-      const double end = upper ? interval.high + rounding : interval.low - rounding;
-      if (!std::isfinite(end)) continue;
+      const double end =
+          upper ? interval.high + rounding : std::nextafter(interval.low - rounding, -INFINITY);
+      if (!std::isfinite(end) || !may_cut(mesh, i, end, most)) continue;
       // Without this end of the interval.
       (upper ? interval.high : interval.low) = upper ? INFINITY : -INFINITY;
       std::vector<double> coordinates;
       for (const int node : select_nodes(mesh, on_boundary, others))
         coordinates.push_back(mesh.points[at(node)][i]);
       std::ranges::sort(coordinates);
-      const std::string cut = cut_at(coordinates, upper ? end : std::nextafter(end, -INFINITY), upper, most);
+      const std::string cut = cut_at(coordinates, end, upper, most);
       if (!cut.empty()) return fmt::format("selects {} in {}", cut, "xyz"[i]);
     }
   }
   return "";
+}
+
+}  // namespace
+
+std::vector<std::string> cut_planes(const Mesh& mesh, const std::vector<bool>& on_boundary,
+                                    const std::vector<NodeSetRule>& rules) {
+  const double rounding = rounding_of(mesh), most = 0.02 * shortest_edge(mesh);
+  std::vector<std::string> cuts;
+  for (const NodeSetRule& rule : rules) {
+    const std::string cut = cut_plane(mesh, on_boundary, rule, rounding, most);
+    if (!cut.empty()) cuts.push_back(fmt::format("sets.{} {}", rule.name, cut));
+  }
+  return cuts;
 }
 
 Seam seam_of(const Mesh& mesh, const Ties& ties, const std::vector<Quadrilateral>& boundary) {

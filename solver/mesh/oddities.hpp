@@ -14,10 +14,11 @@ struct SetShape {
 SetShape shape_of(const Mesh& mesh, const std::vector<Quadrilateral>& boundary,
                   const std::vector<int>& nodes);
 
-/// A description of nodes that seem to be one plane but are divided by the end of a rule's interval; empty if
-/// there are none. These are four or more nodes whose coordinates differ by less than a fiftieth of the
-/// shortest edge, while all others are five times as far away.
-std::string cut_plane(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule);
+/// Descriptions of nodes that seem to be one plane but are divided by the end of a rule's interval, for each
+/// rule with such nodes: "sets.NAME selects ...". These are four or more nodes whose coordinates differ by
+/// less than a fiftieth of the shortest edge, while all others are five times as far away.
+std::vector<std::string> cut_planes(const Mesh& mesh, const std::vector<bool>& on_boundary,
+                                    const std::vector<NodeSetRule>& rules);
 
 /// Nodes of the boundary that lie at one place, within the rounding of the mesh, but are not joined.
 struct Seam {

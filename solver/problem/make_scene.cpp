@@ -197,10 +197,10 @@ Scene make_scene(const Case& description, Mesh mesh, NodeSets sets_of_file,
   scene.angles = {0.0};
   try {
     require_positive_jacobians(scene.mesh);
+    scene.boundary = boundary_faces(scene.mesh.cells);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file, error.what()));
   }
-  scene.boundary = boundary_faces(scene.mesh.cells);
   const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
   for (const auto& rule : description.sets) {
     auto nodes = select_nodes(scene.mesh, on_boundary, rule);

@@ -89,10 +89,14 @@ std::vector<CaseKey> keys_of_materials(const AnyLaw& law) {
                              .allowed = Range::positive().text(),
                              .meaning = "undeformed mass density"}};
   if (splits_volume(law))
-    keys.push_back(word_key("volumetric", false, names_of(VolumetricParts{}), "the volumetric energy"));
+    keys.push_back(word_key("volumetric", false, names_of(VolumetricParts{}),
+                            "the volumetric energy, where K is the initial bulk modulus: K/2 (J - 1)^2, the "
+                            "default, K/2 (ln J)^2, or K/4 (J^2 - 1 - 2 ln J)"));
   if (has_fibres(law)) {
-    keys.push_back(number_key("fibre_direction", 3, "-", false, "direction of the fibres everywhere"));
-    keys.push_back(number_key("sheet_direction", 3, "-", false, "direction of the sheets everywhere"));
+    keys.push_back(
+        number_key("fibre_direction", 3, "-", false, "direction of the fibres everywhere, of any length"));
+    keys.push_back(
+        number_key("sheet_direction", 3, "-", false, "the same of the sheets, for laws with sheets"));
     keys.push_back({.name = "fibres",
                     .type = "table",
                     .unit = "-",
@@ -113,8 +117,7 @@ CaseTable displacement_table() {
 }
 
 CaseTable rotation_table() {
-  CaseKey axis =
-      word_key("axis", true, {"x", "y", "z"}, "axis of the rotation, or its direction as a vector");
+  CaseKey axis = word_key("axis", true, {"x", "y", "z"}, "axis of the rotation, or its direction [x, y, z]");
   return {
       .table = "rotation",
       .several = true,
@@ -129,11 +132,13 @@ CaseTable method_table() {
   kappa.allowed = Range::at_least(0.0).text();
   CaseKey accuracy = number_key("accuracy", 1, "-", false, "target of an adaptive method");
   accuracy.allowed = Range::positive().text();
-  return {.table = "method",
-          .summary = "how the answer is computed",
-          .keys = {word_key("name", true, method_names(), "a method"), kappa,
-                   word_key("kappa_modulus", false, {"p-wave", "shear"}, "the modulus that kappa multiplies"),
-                   accuracy, word_key("precision", false, {"double", "float"}, "the numbers to compute in")}};
+  return {
+      .table = "method",
+      .summary =
+          "how `sandglass run` computes the answer unless its options differ; `sandglass choose` writes it",
+      .keys = {word_key("name", true, method_names(), "a method"), kappa,
+               word_key("kappa_modulus", false, {"p-wave", "shear"}, "the modulus that kappa multiplies"),
+               accuracy, word_key("precision", false, {"double", "float"}, "the numbers to compute in")}};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "mesh/vectors.hpp"
 #include "solve/adaption.hpp"
 #include "solve/frame.hpp"
 #include "solve/health.hpp"
@@ -20,23 +21,14 @@ namespace sandglass {
 namespace {
 
 /// The paper's loading curve (eq. 15) over relative time: from 0 to 1, with zero velocity and acceleration at
-/// both ends.
-constexpr double loading_curve(double relative_time) {
-  const double t = std::clamp(relative_time, 0.0, 1.0);
-  return t * t * t * (10.0 + t * (-15.0 + t * 6.0));
-}
-
-/// Its first derivative with respect to relative time.
-constexpr double loading_curve_rate(double relative_time) {
-  const double t = std::clamp(relative_time, 0.0, 1.0);
-  return 30.0 * t * t * (1.0 - t) * (1.0 - t);
-}
-
-/// Its second derivative with respect to relative time.
-constexpr double loading_curve_acceleration(double relative_time) {
-  const double t = std::clamp(relative_time, 0.0, 1.0);
-  return 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t);
-}
+/// both ends; and its derivatives with respect to relative time.
+struct LoadingCurve {
+  explicit constexpr LoadingCurve(double relative_time) : t(std::clamp(relative_time, 0.0, 1.0)) {}
+  constexpr double value() const { return t * t * t * (10.0 + t * (-15.0 + t * 6.0)); }
+  constexpr double rate() const { return 30.0 * t * t * (1.0 - t) * (1.0 - t); }
+  constexpr double acceleration() const { return 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t); }
+  double t;
+};
 
 /// Displacements (m) at the share s of a step of h seconds, interpolated from displacements and velocities
 /// (m/s) at its ends: of third order, so that reported motions do not depend on the positions of the steps.
@@ -44,12 +36,10 @@ NodalField cubic(double s, double h, const NodalField& u, const NodalField& v, c
                  const NodalField& v_after) {
   const double r = 1.0 - s;
   NodalField between(u.size());
-  for (std::size_t n = 0; n < u.size(); ++n) {
-    for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t n = 0; n < u.size(); ++n)
+    for (std::size_t i = 0; i < 3; ++i)
       between[n][i] = r * r * ((1.0 + 2.0 * s) * u[n][i] + s * h * v[n][i]) +
                       s * s * ((1.0 + 2.0 * r) * u_after[n][i] - r * h * v_after[n][i]);
-    }
-  }
   return between;
 }
 
@@ -113,11 +103,8 @@ class CentralDifference {
   /// The kinetic energy (J) at velocities v (m/s), from the product of velocities half a step before and
   /// after: central differences conserve its sum with the strain energy, in small motions exactly.
   double kinetic_energy(const NodalField& v) const {
-    const std::vector<double>& masses = model_.masses();
     double sum = 0.0;
-    for (std::size_t n = 0; n < v.size(); ++n) {
-      sum += masses[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
-    }
+    for (std::size_t n = 0; n < v.size(); ++n) sum += model_.masses()[n] * dot(v[n], v[n]);
     return 0.5 * sum - leapfrog_.energy_of_step();
   }
 
@@ -171,7 +158,7 @@ class CentralDifference {
   void advance() {
     const double left = settings_.duration - time();
     leapfrog_.advance(left < next_step_ * (1.0 + 1e-6) ? left : next_step_,
-                      [this](Body<Real>& body) { body.impose(loading(time()), time()); });
+                      [this](Body<Real>& body) { body.impose(curve(time()).value(), time()); });
   }
 
   /// Takes the next step and, if the body is healthy after it, passes on the displacements that an observer
@@ -196,15 +183,14 @@ class CentralDifference {
   /// Adds the work of imposed displacements and forces over the last step, from the mean of the forces at its
   /// ends.
   void add_external_work() {
-    const double now = loading(time()), before = loading(time() - step_size());
+    const double now = curve(time()).value(), before = curve(time() - step_size()).value();
     follow_paths(before, now);
     const auto& constraints = model_.scene().constraints;
     for (const std::size_t k : body_.constraints().own()) {
       const ImposedPath& path = constraints[k].path;
       const double force = constraint_force(k);
-      for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t i = 0; i < 3; ++i)
         works_[k] += 0.5 * (reactions_[k] + force) * moved_[path.angle][i] * path.share[i];
-      }
       reactions_[k] = force;
     }
     body_.add_work_of_loads();
@@ -225,10 +211,11 @@ class CentralDifference {
   /// Velocities (m/s) at the time of the displacements; driven nodes have the velocities of their paths.
   NodalField velocities() const {
     NodalField v = leapfrog_.free_velocities();
+    const LoadingCurve now = curve(time());
     for (const Constraint& constraint : model_.scene().constraints) {
       const ImposedPath& path = constraint.path;
-      const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], loading(time())));
-      v[at(constraint.node)][at(constraint.component)] = loading_rate(time()) * by_factor;
+      const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], now.value()));
+      v[at(constraint.node)][at(constraint.component)] = now.rate() / ramp_time() * by_factor;
     }
     follow(model_.scene().ties, v);
     return v;
@@ -243,14 +230,12 @@ class CentralDifference {
   }
 
   double ramp_time() const { return settings_.ramp_time > 0.0 ? settings_.ramp_time : settings_.duration; }
-  double loading(double time) const { return loading_curve(time / ramp_time()); }
-  double loading_rate(double time) const { return loading_curve_rate(time / ramp_time()) / ramp_time(); }
+  LoadingCurve curve(double time) const { return LoadingCurve(time / ramp_time()); }
 
   /// Updates the changes of the terms of paths over the last step, from one load factor to the next, and
   /// their second derivatives with respect to relative time.
   void follow_paths(double before, double now) {
-    const double rate = loading_curve_rate(time() / ramp_time());
-    const double acceleration = loading_curve_acceleration(time() / ramp_time());
+    const double rate = curve(time()).rate(), acceleration = curve(time()).acceleration();
     for (std::size_t m = 0; m < moved_.size(); ++m) {
       const double angle = model_.scene().angles[m];
       const PathTerms from = path_terms(angle, before), to = path_terms(angle, now);
@@ -271,9 +256,8 @@ class CentralDifference {
   double inertia(const Constraint& constraint) const {
     const double mass = model_.masses()[at(constraint.node)], T = ramp_time();
     double force = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i)
       force += mass * constraint.path.share[i] * accelerations_[constraint.path.angle][i];
-    }
     return force / (T * T);
   }
 

@@ -9,6 +9,7 @@
 #include "choice/variations.hpp"
 #include "comparison/answer.hpp"
 #include "comparison/comparison.hpp"
+#include "io/case_file.hpp"
 
 namespace sandglass {
 
@@ -31,16 +32,14 @@ double noise_velocity(const Trial& trial) {
 }  // namespace
 
 Scene scene_of(const Trial& trial) {
-  Case description = trial.description;
+  CaseOnMesh problem = with_mesh(trial.description);
+  auto& [description, mesh, sets, element_sets] = problem;
   const auto shape = [&](Vector& v) {
     v[2] *= trial.aspect;
     v[0] += trial.skew * v[2];
   };
-  Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));
   const auto on_boundary = boundary_nodes(mesh);
-  NodeSets sets;
   for (const auto& rule : description.sets) sets[rule.name] = select_nodes(mesh, on_boundary, rule);
-  ElementSets element_sets;
   for (const auto& rule : description.element_sets) element_sets[rule.name] = select_elements(mesh, rule);
   description.sets.clear();
   description.element_sets.clear();
