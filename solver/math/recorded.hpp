@@ -44,9 +44,7 @@ struct Constant {
     if constexpr (std::is_same_v<Real, float>) return in_float;
     return static_cast<Real>(in_double);
   }
-  bool is(double number) const {
-    return in_double == number && in_float == static_cast<float>(number);
-  }
+  bool is(double number) const { return in_double == number && in_float == static_cast<float>(number); }
 };
 
 /// An operation of a straight-line program, on the results of earlier steps.

@@ -54,7 +54,8 @@ ForceProgram record(const CalledLaw& law, bool has_fibres) {
   }
   const auto element = inputs<Element>(tape);
   if constexpr (!std::is_empty_v<Element>) {
-    add("constants", sizeof(Element), "of the element, in SI units: its Element<T> of the kinematics, then of the control");
+    add("constants", sizeof(Element),
+        "of the element, in SI units: its Element<T> of the kinematics, then of the control");
   }
   MaterialAxes<Recorded> axes;
   if (has_fibres) {
@@ -82,8 +83,8 @@ ForceProgram force_program(std::string_view method, const CalledLaw& law, bool h
     if constexpr (obstacle<Method>().empty()) {
       force = record<Method>(law, has_fibres);
     } else {
-      throw InputError(fmt::format("method '{}' has no kernel of one element: {}", Method::name,
-                                   obstacle<Method>()));
+      throw InputError(
+          fmt::format("method '{}' has no kernel of one element: {}", Method::name, obstacle<Method>()));
     }
   });
   return force;

@@ -18,15 +18,14 @@ struct Function {
 
 const std::vector<Function>& functions() {
   using enum Operation;
-  static const std::vector<Function> list{
-      {max, "larger", {}},
-      {min, "smaller", {}},
-      {cube_root_guess, "inverse_cube_root_guess", {}},
-      {power_of_two, "power_of_two", {}},
-      {binary_exponent, "binary_exponent", {}},
-      {inverse_cube_root, "inverse_cube_root", {cube_root_guess}},
-      {expm1, "exponential_minus_one", {power_of_two}},
-      {log1p, "logarithm_of_one_plus", {power_of_two, binary_exponent}}};
+  static const std::vector<Function> list{{max, "larger", {}},
+                                          {min, "smaller", {}},
+                                          {cube_root_guess, "inverse_cube_root_guess", {}},
+                                          {power_of_two, "power_of_two", {}},
+                                          {binary_exponent, "binary_exponent", {}},
+                                          {inverse_cube_root, "inverse_cube_root", {cube_root_guess}},
+                                          {expm1, "exponential_minus_one", {power_of_two}},
+                                          {log1p, "logarithm_of_one_plus", {power_of_two, binary_exponent}}};
   return list;
 }
 
@@ -109,12 +108,12 @@ class Writer {
                            [&](const Step& step) { return ((step.operation == operations) || ...); });
     };
     using enum Operation;
-    return text +
-           fmt::format("//   f ({} numbers): internal forces, N, in the order of u; set, not read\n"
-                       "// {} additions and subtractions, {} multiplications, {} divisions, {} roots, "
-                       "exponentials and logarithms per element.\n\n",
-                       force.program.results.size(), count(add, subtract), count(multiply), count(divide),
-                       count(sqrt, inverse_cube_root, expm1, log1p));
+    return text + fmt::format(
+                      "//   f ({} numbers): internal forces, N, in the order of u; set, not read\n"
+                      "// {} additions and subtractions, {} multiplications, {} divisions, {} roots, "
+                      "exponentials and logarithms per element.\n\n",
+                      force.program.results.size(), count(add, subtract), count(multiply), count(divide),
+                      count(sqrt, inverse_cube_root, expm1, log1p));
   }
 
   template <class... Arguments>
@@ -134,7 +133,8 @@ class Writer {
   /// Languages differ in infinities, so that such numbers are given by their bits.
   static std::string literal(Real number) {
     if (!std::isfinite(number)) {
-      return fmt::format("of_bits({})", std::bit_cast<typename sandglass::detail::FloatBits<Real>::Integer>(number));
+      return fmt::format("of_bits({})",
+                         std::bit_cast<typename sandglass::detail::FloatBits<Real>::Integer>(number));
     }
     const std::string digits = fmt::format("{:#}{}", number, single ? "f" : "");
     return number < Real(0) ? "(" + digits + ")" : digits;
@@ -159,8 +159,8 @@ class Writer {
                               fmt::arg("arguments", fmt::to_string(fmt::join(arguments, ", ")))) +
                        " {\n";
     const std::string indent(2, ' ');
-    const std::string result = program.results.empty() ? on_bits(function.operation)
-                                                       : statements(program, names, indent, text)[0];
+    const std::string result =
+        program.results.empty() ? on_bits(function.operation) : statements(program, names, indent, text)[0];
     return text + fmt::format("{}return {};\n}}\n", indent, result);
   }
 
