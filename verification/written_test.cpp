@@ -139,12 +139,12 @@ template <class Real>
 std::vector<std::vector<Real>> results_in_c(const ForceProgram& force,
                                             const std::vector<Sample<Real>>& samples) {
   const TemporaryFolder folder;
-  std::ofstream(folder.path() / "kernel.c")
+  std::ofstream(folder / "kernel.c")
       << kernel_text<Real>(force, dialects().front(), {"forces", {"A test."}});
-  const auto library = (folder.path() / "kernel.so").string();
+  const auto library = (folder / "kernel.so").string();
   const std::string compile = fmt::format(
       "{} -O2 -std=c99 -Wall -Werror -Wno-unused-function -ffp-contract=off -shared -fPIC {} -o {} -lm",
-      SANDGLASS_C_COMPILER, (folder.path() / "kernel.c").string(), library);
+      SANDGLASS_C_COMPILER, (folder / "kernel.c").string(), library);
   EXPECT_EQ(std::system(compile.c_str()), 0) << compile;
   void* const loaded = dlopen(library.c_str(), RTLD_NOW);
   if (loaded == nullptr) return {};
