@@ -26,15 +26,6 @@ struct KernelOptions {
   int material = 1;
 };
 
-const Dialect& dialect_named(const std::string& name) {
-  std::vector<std::string> names;
-  for (const Dialect& dialect : dialects()) {
-    if (dialect.name == name) return dialect;
-    names.emplace_back(dialect.name);
-  }
-  throw InputError(fmt::format("--dialect = '{}' is not known; {}", name, suggestion(name, names)));
-}
-
 /// The precision as chosen, or the dialect's widest.
 Precision precision_in(const Dialect& dialect, const std::string& chosen) {
   const bool has_double = !dialect.bits_of_double.empty();
@@ -83,7 +74,8 @@ void write_kernels(const KernelOptions& options, bool material_chosen) {
     throw InputError(
         fmt::format("METHOD = '{}' has no kernel that could be written: {}", options.method, reason));
   }
-  const Dialect& dialect = dialect_named(options.dialect);
+  const Dialect& dialect = *std::find_if(dialects().begin(), dialects().end(),
+                                         [&](const Dialect& known) { return known.name == options.dialect; });
   const bool single = precision_in(dialect, options.precision) == Precision::single_precision;
   const Case description = find_case(options.case_name);
   if (!options.output.empty()) require_place(options.output, description.files);
@@ -114,8 +106,8 @@ void write_kernels(const KernelOptions& options, bool material_chosen) {
 
 void add_kernels_command(CLI::App& app) {
   auto options = std::make_shared<KernelOptions>();
-  std::vector<std::string_view> names;
-  for (const Dialect& dialect : dialects()) names.push_back(dialect.name);
+  std::vector<std::string> names;
+  for (const Dialect& dialect : dialects()) names.emplace_back(dialect.name);
   CLI::App* command = app.add_subcommand(
       "kernels",
       "write the force of a method's elements as source for other processors.\n"
@@ -126,7 +118,8 @@ void add_kernels_command(CLI::App& app) {
   command->add_option("METHOD", options->method, "see `sandglass methods`")->required();
   command->add_option("CASE", options->case_name, "name or file of the case whose material it is for")
       ->required();
-  command->add_option("--dialect", options->dialect, fmt::format("{}", fmt::join(names, ", ")))
+  command->add_option("--dialect", options->dialect, "the language")
+      ->check(CLI::IsMember(names))
       ->capture_default_str();
   command->add_option("-p,--precision", options->precision,
                       "double or float; default: double where the dialect has it");

@@ -139,8 +139,7 @@ template <class Real>
 std::vector<std::vector<Real>> results_in_c(const ForceProgram& force,
                                             const std::vector<Sample<Real>>& samples) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "kernel.c")
-      << kernel_text<Real>(force, dialects().front(), {"forces", {"A test."}});
+  std::ofstream(folder / "kernel.c") << kernel_text<Real>(force, dialects().front(), {"forces", {"A test."}});
   const auto library = (folder / "kernel.so").string();
   const std::string compile = fmt::format(
       "{} -O2 -std=c99 -Wall -Werror -Wno-unused-function -ffp-contract=off -shared -fPIC {} -o {} -lm",
