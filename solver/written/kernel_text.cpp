@@ -108,12 +108,13 @@ class Writer {
                            [&](const Step& step) { return ((step.operation == operations) || ...); });
     };
     using enum Operation;
-    return text + fmt::format(
-                      "//   f ({} numbers): internal forces, N, in the order of u; set, not read\n"
-                      "// {} additions and subtractions, {} multiplications, {} divisions, {} roots, "
-                      "exponentials and logarithms per element.\n\n",
-                      force.program.results.size(), count(add, subtract), count(multiply), count(divide),
-                      count(sqrt, inverse_cube_root, expm1, log1p));
+    return text +
+           fmt::format(
+               "//   f ({} numbers): internal forces, N, in the order of u; set, not read\n"
+               "// Per element {} additions and subtractions, {} multiplications, {} divisions, {} roots, "
+               "exponentials and logarithms.\n\n",
+               force.program.results.size(), count(add, subtract), count(multiply), count(divide),
+               count(sqrt, inverse_cube_root, expm1, log1p));
   }
 
   template <class... Arguments>
