@@ -13,6 +13,7 @@ void add_methods_command(CLI::App& app);
 void add_choose_command(CLI::App& app, int& exit_code);
 void add_mesh_command(CLI::App& app);
 void add_flops_command(CLI::App& app);
+void add_kernels_command(CLI::App& app);
 void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks> ranks);
 void add_verify_command(CLI::App& app, int& exit_code);
 void add_stability_command(CLI::App& app, int& exit_code);

@@ -50,6 +50,7 @@ int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ra
   sandglass::add_score_command(app, exit_code);
   sandglass::add_mesh_command(app);
   sandglass::add_flops_command(app);
+  sandglass::add_kernels_command(app);
   sandglass::add_bench_command(app, exit_code);
   sandglass::add_completion_command(app);
   sandglass::add_manual_command(app);

@@ -4,11 +4,12 @@
 #include "counting/counted.hpp"
 #include "math/dual.hpp"
 #include "math/pack.hpp"
+#include "math/recorded.hpp"
 
 namespace sandglass::verification {
 
 /// The number types of kernels; vocabulary_test.cpp tests each for the functions of scalar.hpp.
-using NumberTypes = TypeList<double, float, Pack<double>, Pack<float>, Dual<double>, Counted>;
+using NumberTypes = TypeList<double, float, Pack<double>, Pack<float>, Dual<double>, Counted, Recorded>;
 
 /// The plain value of a number, without its slope, tally or other lanes.
 template <class Number>

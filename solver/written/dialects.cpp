@@ -1,0 +1,54 @@
+#include "written/dialects.hpp"
+
+namespace sandglass {
+
+const std::vector<Dialect>& dialects() {
+  static const std::vector<Dialect> list{
+      {.name = "c",
+       .language = "C99",
+       .bits_of_double = "long long",
+       .bits_of_float = "int",
+       .local = "static ",
+       .begin = "#include <tgmath.h>\n\n",
+       .array = "const {real}* restrict {name}",
+       .results = "{real}* restrict {name}",
+       .kernel = "void {name}(long count, {arguments}) {{\n  for (long e = 0; e < count; ++e) {{\n"},
+      {.name = "opencl",
+       .language = "OpenCL C",
+       .bits_of_double = "long",
+       .bits_of_float = "int",
+       .array = "__global const {real}* restrict {name}",
+       .results = "__global {real}* restrict {name}",
+       .kernel = "__kernel void {name}(long count, {arguments}) {{\n  const long e = get_global_id(0);\n"
+                 "  if (e < count) {{\n"},
+      {.name = "cuda",
+       .language = "CUDA C++",
+       .bits_of_double = "long long",
+       .bits_of_float = "int",
+       .local = "__device__ ",
+       .array = "const {real}* __restrict__ {name}",
+       .results = "{real}* __restrict__ {name}",
+       .kernel = "extern \"C\" __global__ void {name}(long long count, {arguments}) {{\n"
+                 "  const long long e = blockIdx.x * (long long)blockDim.x + threadIdx.x;\n"
+                 "  if (e < count) {{\n"},
+      {.name = "wgsl",
+       .language = "WGSL",
+       .bits_of_double = "",
+       .bits_of_float = "i32",
+       .abs = "abs",
+       .bits = "fn bits_of(x: f32) -> i32 {{\n  return bitcast<i32>(x);\n}}\n\n"
+               "fn of_bits(n: i32) -> f32 {{\n  return bitcast<f32>(n);\n}}\n",
+       .function = "fn {name}({arguments}) -> f32",
+       .argument = "{name}: f32",
+       .value = "let {name} = {value};",
+       .mask = "let {name} = {value};",
+       .select = "select({b}, {a}, {mask})",
+       .array = "@group(0) @binding({number}) var<storage, read> {name}: array<f32>;\n",
+       .results = "@group(0) @binding({number}) var<storage, read_write> {name}: array<f32>;\n",
+       .between = "",
+       .kernel = "{arguments}\n@compute @workgroup_size(64) fn {name}(@builtin(global_invocation_id) id: "
+                 "vec3u) {{\n  let count = arrayLength(&f) / 24;\n  let e = id.x;\n  if (e < count) {{\n"}};
+  return list;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace sandglass {
+
+/// A language in which kernels are written. Its texts are templates, in which {real} and {bits} are the types
+/// of numbers and of their bits, and {local} is what a function for use in the file alone begins with. The
+/// defaults are those of C and its descendants.
+struct Dialect {
+  std::string_view name;
+  std::string_view language;
+  std::string_view bits_of_double;  ///< an integer as wide as a number; empty: there are no such numbers
+  std::string_view bits_of_float;
+  std::string_view local = "";
+  std::string_view begin = "";  ///< of the file, after its comment
+  std::string_view abs = "fabs";
+
+  std::string_view bits =  ///< the functions bits_of and of_bits
+      "{local}{bits} bits_of({real} x) {{\n  union {{\n    {real} number;\n    {bits} bits;\n  }} both;\n"
+      "  both.number = x;\n  return both.bits;\n}}\n\n"
+      "{local}{real} of_bits({bits} n) {{\n  union {{\n    {real} number;\n    {bits} bits;\n  }} both;\n"
+      "  both.bits = n;\n  return both.number;\n}}\n";
+  std::string_view function = "{local}{real} {name}({arguments})";  ///< the head of a function
+  std::string_view argument = "{real} {name}";                      ///< a number among its arguments
+  std::string_view value = "const {real} {name} = {value};";        ///< the definition of a number
+  std::string_view mask = "const int {name} = {value};";            ///< the same of a comparison
+  std::string_view select = "({mask} ? {a} : {b})";
+
+  std::string_view array;           ///< an argument of the kernel, which it reads; {number} of them
+  std::string_view results;         ///< the same, which it sets
+  std::string_view between = ", ";  ///< two of them
+  std::string_view kernel;          ///< from the head of the kernel to the loop over elements e
+  std::string_view entry = "{name}[{k} * count + e]";  ///< number k of element e in an array
+  std::string_view end = "  }\n}\n";                   ///< of the kernel
+};
+
+/// The list of dialects. A new one is an entry.
+const std::vector<Dialect>& dialects();
+
+}  // namespace sandglass

@@ -1,0 +1,93 @@
+#include "written/force_program.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "element/methods.hpp"
+
+namespace sandglass {
+
+namespace {
+
+template <class Method>
+using Kernel = FormulationOf<Method, CalledLaw>;
+
+template <class Method>
+constexpr std::string_view obstacle() {
+  if (is_condensed<Method>) return "its answers are superposed, not computed from forces";
+  if (is_adaptive<Method>) return "it chooses a level for each element; write its levels";
+  if (Kernel<Method>::averages_over_nodes) return "it averages over nodes, in two passes over the elements";
+  if (Kernel<Method>::remembers) return "its elements remember earlier steps";
+  return {};
+}
+
+/// An aggregate of the next inputs.
+template <class Aggregate>
+Aggregate inputs(Tape& tape) {
+  Aggregate aggregate{};
+  if constexpr (!std::is_empty_v<Aggregate>) {
+    std::array<Recorded, sizeof(Aggregate) / sizeof(Recorded)> numbers;
+    for (Recorded& number : numbers) number = tape.input();
+    aggregate = std::bit_cast<Aggregate>(numbers);
+  }
+  return aggregate;
+}
+
+template <class Method>
+ForceProgram record(const CalledLaw& law, bool has_fibres) {
+  using K = Kernel<Method>;
+  using Element = typename K::template Element<Recorded>;
+  Tape tape;
+  ForceProgram force;
+  const auto add = [&](std::string_view name, std::size_t bytes, std::string meaning) {
+    force.arrays.push_back({name, static_cast<int>(bytes / sizeof(Recorded)), std::move(meaning)});
+  };
+  ElementMotion<Recorded> motion;
+  add("u", sizeof(NodalVectors<Recorded>), "displacements, m: component i of node I is number 3 I + i");
+  motion.u = to_modes(inputs<NodalVectors<Recorded>>(tape));
+  if constexpr (K::needs_coordinates) {
+    add("X", sizeof(NodalVectors<Recorded>), "reference coordinates, m, in the order of u");
+    motion.X = to_modes(inputs<NodalVectors<Recorded>>(tape));
+  }
+  const auto element = inputs<Element>(tape);
+  if constexpr (!std::is_empty_v<Element>) {
+    add("constants", sizeof(Element),
+        "of the element, in SI units: its Element<T> of the kinematics, then of the control");
+  }
+  MaterialAxes<Recorded> axes;
+  if (has_fibres) {
+    add("axes", sizeof axes, "material axes, the rows of a rotation: fibres, sheets, their normal");
+    axes = inputs<MaterialAxes<Recorded>>(tape);
+  }
+  typename K::template History<Recorded> none{};
+  const auto now = K::deformation(motion, element);
+  const auto f = from_modes(K::force(now, element, none, with_axes(law, has_fibres ? &axes : nullptr)));
+  force.program = tape.program({f.entries.begin(), f.entries.end()});
+  return force;
+}
+
+}  // namespace
+
+std::string_view why_not_written(std::string_view method) {
+  std::string_view reason;
+  with_named_type(Methods{}, method, [&]<class Method>() { reason = obstacle<Method>(); });
+  return reason;
+}
+
+ForceProgram force_program(std::string_view method, const CalledLaw& law, bool has_fibres) {
+  ForceProgram force;
+  with_named_type(Methods{}, method, [&]<class Method>() {
+    if constexpr (obstacle<Method>().empty()) {
+      force = record<Method>(law, has_fibres);
+    } else {
+      throw InputError(
+          fmt::format("method '{}' has no kernel of one element: {}", Method::name, obstacle<Method>()));
+    }
+  });
+  return force;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "material/called_law.hpp"
+#include "math/recorded.hpp"
+
+namespace sandglass {
+
+/// An array that a kernel reads, with so many numbers for each element.
+struct KernelArray {
+  std::string_view name;
+  int numbers;
+  std::string meaning;
+};
+
+/// The internal forces of one element as a straight-line program. Its inputs are the numbers of its arrays in
+/// order, its results the forces (N) in the order of the displacements.
+struct ForceProgram {
+  std::vector<KernelArray> arrays;
+  Program program;
+};
+
+/// Records the force of a method's elements with an elastic law in its own axes. Throws InputError for
+/// methods whose force needs more than the element's motion and constants.
+ForceProgram force_program(std::string_view method, const CalledLaw& law, bool has_fibres);
+
+/// Why a method's force is not such a program; empty if it is.
+std::string_view why_not_written(std::string_view method);
+
+}  // namespace sandglass
