@@ -68,6 +68,13 @@ std::string law_text(const Material& material) {
   return fmt::format("{} ({}), volumetric part {}", name_of(material.law), fmt::join(values, ", "), volume);
 }
 
+/// Whether it computes exponentials or logarithms, which add and subtract large numbers to round.
+bool needs_order_of_sums(const Program& program) {
+  return std::ranges::any_of(program.steps, [](const Step& step) {
+    return step.operation == Operation::power_of_two || step.operation == Operation::binary_exponent;
+  });
+}
+
 void write_kernels(const KernelOptions& options, bool material_chosen) {
   method_named(options.method, "METHOD");
   if (const auto reason = why_not_written(options.method); !reason.empty()) {
@@ -87,6 +94,13 @@ void write_kernels(const KernelOptions& options, bool material_chosen) {
   }
   const ForceProgram force =
       force_program(options.method, elastic_law(kernel_law(material)), has_fibres(material.law));
+  if (!dialect.keeps_sums && needs_order_of_sums(force.program)) {
+    throw InputError(
+        fmt::format("--dialect = '{}': the exponentials or logarithms of law '{}' lose digits in {}, whose "
+                    "compilers may reorder "
+                    "sums; allowed: laws without them, or another dialect",
+                    dialect.name, name_of(material.law), dialect.language));
+  }
   KernelTitle title{options.method + "_force",
                     {fmt::format("Internal forces of elements of {} with the law {}, in {}.", options.method,
                                  law_text(material), single ? "float" : "double"),
