@@ -49,8 +49,9 @@ std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) 
       if (keys[other] != keys[f]) continue;
       ++count;
       // Elements on opposite sides of a face list its nodes in opposite directions.
-      const auto first = std::ranges::find(faces[other], faces[f][0]) - faces[other].begin();
-      if (other == f || faces[other][at(first + 1) % 4] != faces[f][1]) continue;
+      const Quadrilateral& facing = faces[other];
+      const auto first = static_cast<std::size_t>(std::ranges::find(facing, faces[f][0]) - facing.begin());
+      if (other == f || facing[(first + 1) % 4] != faces[f][1]) continue;
       throw InputError(fmt::format(
           "elements {} and {} lie on the same side of their common face, or share it with a third; elements "
           "must not overlap",

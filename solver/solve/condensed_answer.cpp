@@ -42,8 +42,8 @@ Rows<Real> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
   if (const BodyForce* other = first_not_dead(scene.forces)) {
     throw ComputationError(
-        fmt::format("method '{}' superposes answers to displacements and dead loads and does not support a "
-                    "{}; choose another method",
+        fmt::format("method '{}' superposes answers to displacements and dead loads and does not support "
+                    "[[{}]]; choose another method",
                     model.choice().method, other->traits().name));
   }
   if (!scene.ties.empty()) {
