@@ -205,7 +205,7 @@ long count_of(const Program& program, Operation operation) {
 TEST(Tape, shares_and_drops) {
   Tape tape;
   const Recorded x = tape.input(), y = tape.input();
-  const Recorded unused = sqrt(x / y);
+  [[maybe_unused]] const Recorded unused = sqrt(x / y);
   const Program program = tape.program({x * y + y * x, (y - x) * (x - y), x < y});
   EXPECT_EQ(count_of(program, Operation::multiply), 2);
   EXPECT_EQ(count_of(program, Operation::subtract), 2) << "x - y and y - x differ";

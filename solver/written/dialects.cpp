@@ -46,9 +46,9 @@ const std::vector<Dialect>& dialects() {
        .array = "@group(0) @binding({number}) var<storage, read> {name}: array<f32>;\n",
        .results = "@group(0) @binding({number}) var<storage, read_write> {name}: array<f32>;\n",
        .between = "",
-       .keeps_sums = false,
        .kernel = "{arguments}\n@compute @workgroup_size(64) fn {name}(@builtin(global_invocation_id) id: "
-                 "vec3u) {{\n  let count = arrayLength(&f) / 24;\n  let e = id.x;\n  if (e < count) {{\n"}};
+                 "vec3u) {{\n  let count = arrayLength(&f) / 24;\n  let e = id.x;\n  if (e < count) {{\n",
+       .keeps_sums = false}};
   return list;
 }
 
