@@ -44,6 +44,10 @@ class Equilibrium {
   /// Whether there are obstacles, so that motions before they touch do not predict those after it.
   bool may_touch() const { return !contacts_of(body().scene().forces).empty(); }
 
+  /// Whether no fixed contact is contrary to the last evaluation: otherwise nodes are pulled or inside of
+  /// obstacles.
+  bool contact_agrees() const { return body().touch().contrary == 0; }
+
   /// Evaluates the forces with the nodes that touch obstacles now, if these have changed. Accelerated steps
   /// keep them fixed until the norm has fallen, so that forces are smooth; an answer must have those that
   /// touch.

@@ -190,8 +190,8 @@ class Search {
     const bool healthy = is_healthy(body());
     result_.stagnated = healthy && !near();
     const bool single = std::is_same_v<Real, float>;
-    result_.rounded =
-        result_.stagnated && (at_rounding() || (single && stagnation.reaches(equilibrium_.residual())));
+    result_.rounded = result_.stagnated && (at_rounding() || (single && equilibrium_.contact_agrees() &&
+                                                              stagnation.reaches(equilibrium_.residual())));
     return healthy;
   }
 
@@ -246,7 +246,7 @@ class Search {
   /// search continues as far as it can.
   bool at_rounding() const {
     constexpr double most_residual = 0.01, double_precision = std::numeric_limits<double>::epsilon();
-    if (settings_.tolerance < double_precision) return false;
+    if (settings_.tolerance < double_precision || !equilibrium_.contact_agrees()) return false;
     const double residual = equilibrium_.residual();
     if (residual < 8.0 * double_precision * amplification_) return true;
     return equilibrium_.at_rounding() && (residual < most_residual || equilibrium_.bears_nothing());
@@ -255,12 +255,12 @@ class Search {
   /// Whether the search may end: not with an inverted element, as another equilibrium may be near, and at the
   /// full load with the nodes that touch obstacles there.
   bool arrived() {
-    if (load_levels_.full() && near()) equilibrium_.update_contact();
+    if (load_levels_.full() && equilibrium_.residual() < tolerance()) equilibrium_.update_contact();
     return (near() || (at_rounding() && equilibrium_.bears_nothing())) && is_healthy(body());
   }
 
   bool near() const {
-    return load_levels_.full() ? equilibrium_.residual() < tolerance()
+    return load_levels_.full() ? equilibrium_.residual() < tolerance() && equilibrium_.contact_agrees()
                                : load_levels_.far_enough(equilibrium_);
   }
 
