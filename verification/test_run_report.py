@@ -253,7 +253,7 @@ def test_no_command_overwrites_what_it_reads(block):
 
 
 def test_the_depth_of_a_static_answer_is_that_of_its_end(block, tmp_path):
-    """The search starts from obstacles that have moved into the body: deeper than in the answer."""
+    """A ball is pressed in and half drawn back."""
     held = BARE[: BARE.rindex("[[displacement]]")]
     block.write_text(
         held
@@ -265,7 +265,11 @@ shape = "sphere"
 point = [0.05, 0.05, 0.45]
 radius = 0.25
 displacement = [0.0, 0.0, -0.01]
-penalty = 100.0
+times = [0.0, 0.5, 1.0]
+factors = [0.0, 1.0, 0.5]
+
+[relaxation]
+levels = 4
 """
     )
     output = tmp_path / "a.h5"
