@@ -71,7 +71,7 @@ std::string law_text(const Material& material) {
 /// Whether it computes exponentials or logarithms, which add and subtract large numbers to round.
 bool needs_order_of_sums(const Program& program) {
   return std::ranges::any_of(program.steps, [](const Step& step) {
-    return step.operation == Operation::power_of_two || step.operation == Operation::binary_exponent;
+    return step.operation == Operation::expm1 || step.operation == Operation::log1p;
   });
 }
 
