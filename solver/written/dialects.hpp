@@ -13,8 +13,8 @@ struct Dialect {
   std::string_view language;
   std::string_view bits_of_double;  ///< an integer as wide as a number; empty: there are no such numbers
   std::string_view bits_of_float;
-  std::string_view local = "";
-  std::string_view begin = "";  ///< of the file, after its comment
+  std::string_view local = {};
+  std::string_view begin = {};  ///< of the file, after its comment
   std::string_view abs = "fabs";
 
   std::string_view bits =  ///< the functions bits_of and of_bits
