@@ -52,7 +52,7 @@ class ContactForce : public BodyForce {
   virtual Touch touch(const Row<double>* memory) const = 0;
 
   /// Fixes which nodes touch it, as they did at the last evaluation, or ends that. A fixed contact is a
-  /// spring that pushes and pulls: without it, the force on a body is a smooth function of its displacements.
+  /// spring that pushes and pulls, so that forces are a smooth function of displacements.
   virtual void fix_contact(bool /*fixed*/, Row<double>* /*memory*/) const {}
 
   /// Frees or attaches one node whose fixed contact was contrary at the last evaluation; false if there is

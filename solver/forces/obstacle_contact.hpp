@@ -30,10 +30,7 @@ class ObstacleContact : public ContactForce {
   const std::vector<TouchingNode>& touching() const { return nodes_; }
 
   /// Of a node inside the obstacle, m; negative outside.
-  double depth_at_start(const TouchingNode& one) const {
-    return -facing_body(std::visit([&](const auto& s) { return s.at(difference(one.X, start_)); }, shape_))
-                .distance;
-  }
+  double depth_at_start(const TouchingNode& one) const { return -gap_at(difference(one.X, start_)).distance; }
 
   double half_thickness() const final {
     if (obstacle_.inside) return INFINITY;
