@@ -116,7 +116,7 @@ class Elements final : public ElementLevel {
         const std::size_t cell = at.pack * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
         if (layout_.elements[cell] < 0) continue;
         columns.clear();
-        for (std::size_t I = 0; I < at(b.rows); ++I) {
+        for (std::size_t I = 0; I < std::size_t{b.rows}; ++I) {
           const std::size_t row = layout_.places(at.face + I / 4, I % 4)[lane] / 4;
           std::array<float, 3> column;
           for (int i = 0; i < 3; ++i) {
@@ -334,7 +334,7 @@ class Elements final : public ElementLevel {
   [[gnu::flatten]] void add_diagonals(const Layout::Chunk& chunk) {
     for_each_pack(layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
       const NodalVectors<Number> g = nodal_gradients(elements_[at.pack]);
-      for (std::size_t I = 0; I < at(g.rows); ++I) {
+      for (std::size_t I = 0; I < std::size_t{g.rows}; ++I) {
         const Triple<Number> D = diagonal(elements_[at.pack], g, static_cast<int>(I));
         scatter_add<Number>({D(0, 0), D(1, 0), D(2, 0)}, numbers_of(stiffness_),
                             layout_.places(at.face + I / 4, I % 4));
