@@ -1,12 +1,11 @@
 // Forces and motions that an OpenCL device computes agree with those of this processor up to rounding, and
 // have the same bits in every run. Skipped where OpenCL finds no device.
-#include "device/opencl_processor.hpp"
-
 #include <gtest/gtest.h>
 
 #include "assembly/method_entry.hpp"
 #include "benchmark/force_check.hpp"
 #include "device/opencl.hpp"
+#include "device/opencl_processor.hpp"
 #include "io/case_file.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/stable_step.hpp"
@@ -95,8 +94,8 @@ TEST_F(Device, forces_of_every_method_and_law_are_those_of_this_processor) {
 TEST_F(Device, motions_of_cases_are_those_of_this_processor) {
   constexpr int steps = 1000;
   for (const char* name : {"column", "cylinder-compression", "pushed-ellipsoid", "stiff-core"}) {
-    CaseOnMesh problem =
-        with_mesh(read_case_file(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / (std::string(name) + ".toml")));
+    CaseOnMesh problem = with_mesh(
+        read_case_file(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / (std::string(name) + ".toml")));
     problem.description.quasi_static = false;
     const Scene probe = make_scene(problem);
     DynamicsSettings& dynamics = problem.description.dynamics;
@@ -117,7 +116,8 @@ TEST_F(Device, motions_of_cases_are_those_of_this_processor) {
                                          ? std::numeric_limits<double>::epsilon()
                                          : static_cast<double>(std::numeric_limits<float>::epsilon()));
       const double largest = largest_distance(own.u, NodalField(own.u.size()));
-      const double ratio = lame_lambdas(scene.materials).front() / shear_moduli(scene.materials).front() + 1.0;
+      const double ratio =
+          lame_lambdas(scene.materials).front() / shear_moduli(scene.materials).front() + 1.0;
       EXPECT_LE(largest_distance(other.u, own.u) / largest, 2.0 * 4.0 * roundoff * ratio * std::sqrt(steps))
           << name << ' ' << name_of(precision);
       EXPECT_EQ(integrate(Model(scene, choice), silent).u, other.u) << name << ": other bits in another run";

@@ -56,9 +56,10 @@ const OpenCl& opencl() {
 
 void require_success(cl_int code, const std::string& device, std::string_view action) {
   if (code == CL_SUCCESS) return;
-  throw ComputationError(fmt::format("OpenCL device '{}': {} failed with error {} of OpenCL; allowed: another "
-                                     "device, or none (leave out --device)",
-                                     device, action, code));
+  throw ComputationError(
+      fmt::format("OpenCL device '{}': {} failed with error {} of OpenCL; allowed: another "
+                  "device, or none (leave out --device)",
+                  device, action, code));
 }
 
 std::string text_of(cl_device_id device, cl_device_info key) {
@@ -107,11 +108,21 @@ std::vector<OpenClDeviceName> opencl_devices() {
   return found;
 }
 
-void OpenClDevice::Release::operator()(cl_context context) const { opencl().release_context(context); }
-void OpenClDevice::Release::operator()(cl_command_queue queue) const { opencl().release_queue(queue); }
-void OpenClBuffer::Release::operator()(cl_mem memory) const { opencl().release_buffer(memory); }
-void OpenClKernel::Release::operator()(cl_program program) const { opencl().release_program(program); }
-void OpenClKernel::Release::operator()(cl_kernel kernel) const { opencl().release_kernel(kernel); }
+void OpenClDevice::Release::operator()(cl_context context) const {
+  opencl().release_context(context);
+}
+void OpenClDevice::Release::operator()(cl_command_queue queue) const {
+  opencl().release_queue(queue);
+}
+void OpenClBuffer::Release::operator()(cl_mem memory) const {
+  opencl().release_buffer(memory);
+}
+void OpenClKernel::Release::operator()(cl_program program) const {
+  opencl().release_program(program);
+}
+void OpenClKernel::Release::operator()(cl_kernel kernel) const {
+  opencl().release_kernel(kernel);
+}
 
 OpenClDevice::OpenClDevice(const OpenClDeviceName& chosen) : name_(chosen.name), device_(chosen.device) {
   const std::array<cl_context_properties, 3> properties{
@@ -128,11 +139,12 @@ void OpenClDevice::require_room(std::span<const std::size_t> bytes) const {
   const std::size_t room = number_of(device_, CL_DEVICE_GLOBAL_MEM_SIZE),
                     of_one = number_of(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   if (all <= room && largest <= of_one) return;
-  throw InputError(fmt::format("--device: '{}' has {:.3g} GB of memory, at most {:.3g} GB of them in one piece; "
-                               "this needs {:.3g} GB, {:.3g} GB of them in one piece; allowed: a smaller mesh, "
-                               "--precision float, or another device",
-                               name_, 1e-9 * static_cast<double>(room), 1e-9 * static_cast<double>(of_one),
-                               1e-9 * static_cast<double>(all), 1e-9 * static_cast<double>(largest)));
+  throw InputError(
+      fmt::format("--device: '{}' has {:.3g} GB of memory, at most {:.3g} GB of them in one piece; "
+                  "this needs {:.3g} GB, {:.3g} GB of them in one piece; allowed: a smaller mesh, "
+                  "--precision float, or another device",
+                  name_, 1e-9 * static_cast<double>(room), 1e-9 * static_cast<double>(of_one),
+                  1e-9 * static_cast<double>(all), 1e-9 * static_cast<double>(largest)));
 }
 
 void OpenClDevice::finish() const {
@@ -141,20 +153,22 @@ void OpenClDevice::finish() const {
 
 OpenClBuffer::OpenClBuffer(const OpenClDevice& device, std::size_t bytes) : device_(device) {
   cl_int code = CL_SUCCESS;
-  memory_.reset(opencl().create_buffer(device.context_.get(), CL_MEM_READ_WRITE, std::max<std::size_t>(bytes, 1),
-                                       nullptr, &code));
+  memory_.reset(opencl().create_buffer(device.context_.get(), CL_MEM_READ_WRITE,
+                                       std::max<std::size_t>(bytes, 1), nullptr, &code));
   require_success(code, device.name(), "taking memory");
 }
 
 void OpenClBuffer::write(const void* from, std::size_t bytes) {
   if (bytes == 0) return;
-  require_success(opencl().write(device_.queue_.get(), memory_.get(), CL_TRUE, 0, bytes, from, 0, nullptr, nullptr),
-                  device_.name(), "copying to it");
+  require_success(
+      opencl().write(device_.queue_.get(), memory_.get(), CL_TRUE, 0, bytes, from, 0, nullptr, nullptr),
+      device_.name(), "copying to it");
 }
 
 void OpenClBuffer::read(void* to, std::size_t bytes) const {
-  require_success(opencl().read(device_.queue_.get(), memory_.get(), CL_TRUE, 0, bytes, to, 0, nullptr, nullptr),
-                  device_.name(), "copying from it");
+  require_success(
+      opencl().read(device_.queue_.get(), memory_.get(), CL_TRUE, 0, bytes, to, 0, nullptr, nullptr),
+      device_.name(), "copying from it");
 }
 
 OpenClKernel::OpenClKernel(const OpenClDevice& device, const std::string& source, const std::string& name)
@@ -188,8 +202,9 @@ void OpenClKernel::set_bytes(cl_uint index, std::size_t size, const void* bytes)
 }
 
 void OpenClKernel::run(std::size_t first, std::size_t count) const {
-  require_success(opencl().run(device_.queue_.get(), kernel_.get(), 1, &first, &count, &group, 0, nullptr, nullptr),
-                  device_.name(), "starting a kernel");
+  require_success(
+      opencl().run(device_.queue_.get(), kernel_.get(), 1, &first, &count, &group, 0, nullptr, nullptr),
+      device_.name(), "starting a kernel");
 }
 
 }  // namespace sandglass

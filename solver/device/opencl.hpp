@@ -96,10 +96,8 @@ class OpenClKernel {
   /// Sets one argument.
   void set_argument(cl_uint index, const OpenClBuffer& buffer);
   template <class Number>
-    requires std::is_arithmetic_v<Number>
-  void set_argument(cl_uint index, Number number) {
-    set_bytes(index, sizeof number, &number);
-  }
+  requires std::is_arithmetic_v<Number>
+  void set_argument(cl_uint index, Number number) { set_bytes(index, sizeof number, &number); }
 
   /// Queues a call for each of `count` numbers from `first` on, both multiples of `group`.
   void run(std::size_t first, std::size_t count) const;

@@ -53,9 +53,10 @@ class OpenClProcessor final : public Processor {
   std::unique_ptr<InternalForce<Real>> made(std::unique_ptr<InternalForce<Real>> own, const Mesh& mesh,
                                             const Materials& materials, const MethodChoice& choice) const {
     if (const auto reason = refusal(materials, choice); !reason.empty()) {
-      throw InputError(fmt::format("--device: {}; allowed: elastic laws, methods such as tl-mean-dilatation, and "
-                                   "the precisions of the device; or --device cpu",
-                                   reason));
+      throw InputError(
+          fmt::format("--device: {}; allowed: elastic laws, methods such as tl-mean-dilatation, and "
+                      "the precisions of the device; or --device cpu",
+                      reason));
     }
     return std::make_unique<OpenClForce<Real>>(device_, std::move(own), mesh, materials, choice);
   }
@@ -86,10 +87,12 @@ std::shared_ptr<const Processor> processor_named(const std::string& name) {
     if (const auto [end, error] = std::from_chars(first, last, number); error != std::errc() || end != last)
       number = 0;
   }
-  if (number >= 1 && number <= devices.size()) return std::make_shared<const OpenClProcessor>(devices[number - 1]);
+  if (number >= 1 && number <= devices.size())
+    return std::make_shared<const OpenClProcessor>(devices[number - 1]);
   throw InputError(fmt::format(
       "--device = '{}' is no processor of this machine{}; allowed: {}", name,
-      devices.empty() ? " (OpenCL finds none; a driver is missing, such as pocl-opencl-icd for processors)" : "",
+      devices.empty() ? " (OpenCL finds none; a driver is missing, such as pocl-opencl-icd for processors)"
+                      : "",
       described(devices)));
 }
 

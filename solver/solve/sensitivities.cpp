@@ -149,9 +149,8 @@ void add_change_of_forces(const StaticTangent& tangent, const std::vector<std::v
       materials.list[m].law = moved(own.list[m].law, by);
     }
     for_each_force(tangent, materials, [&](std::size_t e, const ElementSlopes& f) {
-      scatter_add(
-          f, tangent.model().scene().mesh.cells[e], forces,
-          [&](const Dual<double>& component) { return term.weight / length * component.value; });
+      scatter_add(f, tangent.model().scene().mesh.cells[e], forces,
+                  [&](const Dual<double>& component) { return term.weight / length * component.value; });
     });
   }
 }

@@ -46,8 +46,7 @@ ForceProgram record(const CalledLaw& law, bool has_fibres) {
     force.arrays.push_back({name, static_cast<int>(bytes / sizeof(Recorded)), std::move(meaning), is_nodal});
   };
   ElementMotion<Recorded> motion;
-  add("u", sizeof(NodalVectors<Recorded>), "displacements, m: component i of node I is number 3 I + i",
-      true);
+  add("u", sizeof(NodalVectors<Recorded>), "displacements, m: component i of node I is number 3 I + i", true);
   motion.u = to_modes(inputs<NodalVectors<Recorded>>(tape));
   if constexpr (K::needs_coordinates) {
     add("X", sizeof(NodalVectors<Recorded>), "reference coordinates, m, in the order of u", true);

@@ -29,9 +29,9 @@ struct ForceProgram {
 /// methods whose force needs more than the element's motion and constants.
 ForceProgram force_program(std::string_view method, const CalledLaw& law, bool has_fibres);
 
-/// The numbers (SI units) of an element with corners X (m) in the array `constants` of its method's kernel; none
-/// if the kernel has no such array. The method must accept the element. Without `axes` the law's are those of
-/// space.
+/// The numbers (SI units) of an element with corners X (m) in the array `constants` of its method's kernel;
+/// none if the kernel has no such array. The method must accept the element. Without `axes` the law's are
+/// those of space.
 std::vector<double> element_constants(std::string_view method, const NodalVectors<double>& X,
                                       const CalledLaw& law, const MaterialAxes<double>* axes,
                                       const HourglassSettings& settings);

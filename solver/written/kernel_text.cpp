@@ -84,8 +84,10 @@ class Writer {
                    fmt::arg("arguments", fmt::to_string(fmt::join(arguments, dialect_.between))));
     const std::string indent(4, ' ');
     for (int I = 0; by_places_ && I < NodalVectors<Real>::rows; ++I) {
-      text += indent + filled(dialect_.mask, fmt::arg("name", fmt::format("place{}", I)),
-                              fmt::arg("value", entry("places", I))) + "\n";
+      text += indent +
+              filled(dialect_.mask, fmt::arg("name", fmt::format("place{}", I)),
+                     fmt::arg("value", entry("places", I))) +
+              "\n";
     }
     for (const KernelArray& array : force.arrays) {
       for (int k = 0; k < array.numbers; ++k) {
@@ -113,8 +115,9 @@ class Writer {
       text += fmt::format("//   {} ({} numbers): {}\n", array.name, array.numbers, array.meaning);
     }
     if (by_places_) {
-      text += "//   places (8 numbers): component i of the element's node I is at places[I * count + e] + i of a "
-              "nodal array\n";
+      text +=
+          "//   places (8 numbers): component i of the element's node I is at places[I * count + e] + i of a "
+          "nodal array\n";
     }
     const auto count = [&](auto... operations) {
       return std::count_if(force.program.steps.begin(), force.program.steps.end(),
@@ -272,7 +275,8 @@ std::string kernel_text(const ForceProgram& force, const Dialect& dialect, const
   return Writer<Real>(dialect, nodal_values).text(force, title);
 }
 
-template std::string kernel_text<double>(const ForceProgram&, const Dialect&, const KernelTitle&, NodalValues);
+template std::string kernel_text<double>(const ForceProgram&, const Dialect&, const KernelTitle&,
+                                         NodalValues);
 template std::string kernel_text<float>(const ForceProgram&, const Dialect&, const KernelTitle&, NodalValues);
 
 }  // namespace sandglass

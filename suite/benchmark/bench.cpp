@@ -83,7 +83,8 @@ Group make_group(const Scene& scene, const OwnMotions& motions, const std::vecto
   return group;
 }
 
-/// Removes variants that the device refuses, or that would take too long to set up, from the list, and makes their records.
+/// Removes variants that the device refuses, or that would take too long to set up, from the list, and makes
+/// their records.
 std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>& variants) {
   const std::size_t elements = scene.mesh.cells.size(), nodes = scene.mesh.points.size();
   std::vector<BenchRecord> records;
