@@ -67,7 +67,8 @@ std::string text_of(cl_device_id device, cl_device_info key) {
   opencl().get_device_info(device, key, 0, nullptr, &size);
   std::string text(size, '\0');
   opencl().get_device_info(device, key, size, text.data(), nullptr);
-  return text.c_str();  // up to the zero
+  text.resize(std::min(text.size(), text.find('\0')));
+  return text;
 }
 
 cl_ulong number_of(cl_device_id device, cl_device_info key) {
@@ -192,8 +193,8 @@ OpenClKernel::OpenClKernel(const OpenClDevice& device, const std::string& source
 }
 
 void OpenClKernel::set_argument(cl_uint index, const OpenClBuffer& buffer) {
-  cl_mem memory = buffer.memory_.get();
-  set_bytes(index, sizeof memory, &memory);
+  const cl_mem memory = buffer.memory_.get();
+  set_bytes(index, sizeof(cl_mem), &memory);
 }
 
 void OpenClKernel::set_bytes(cl_uint index, std::size_t size, const void* bytes) {
