@@ -69,7 +69,7 @@ class Block {
       : heads_(label("", "", "", "", longest)), units_(label("method", "kernel", "number", "thr", longest)) {
     for (const auto& record : records) {
       const MethodChoice& choice = record.choice;
-      lines_.push_back(label(choice.method, name_of(choice.kernel), name_of(choice.precision),
+      lines_.push_back(label(choice.method, kernel_name(choice), name_of(choice.precision),
                              fmt::to_string(choice.threads), longest));
     }
     bare_ = heads_.size();

@@ -19,6 +19,7 @@
 #include "benchmark/side_by_side.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "comparison/comparison.hpp"
+#include "device/opencl_processor.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
@@ -40,6 +41,7 @@ struct BenchOptions {
   bool rest = false;
   int bodies = 0;
   std::string json;
+  std::string device = "cpu";
 };
 
 template <class Value>
@@ -62,6 +64,7 @@ BenchPlan make_plan(const BenchOptions& options) {
   if (plan.threads.empty()) plan.threads = available_processors() > 1 ? std::vector{1, 2} : std::vector{1};
   require_count("--repetitions", options.repetitions, 1'000'000);
   plan.settings.repetitions = options.repetitions;
+  plan.processor = processor_named(options.device);
   return plan;
 }
 
@@ -222,7 +225,9 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "kernels that compute one element at a time too, and compares with those. Traffic counts every\n"
       "constant and row of a step once. Above 100 % of memory a mesh stays in a cache; the roofline holds "
       "it\n"
-      "against the triad over arrays of its own size.\n"
+      "against the triad over arrays of its own size. --device adds rows for another processor, copies to "
+      "and\n"
+      "from it included; their shares are still of this one.\n"
       "With --rest: wall time from the model to static equilibrium, the median of three runs. Further runs,\n"
       "stopped earlier, find by bisection after how many force evaluations all displacements differ from "
       "the\n"
@@ -258,6 +263,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
                    "batches of about 0.5 ms for each variant, timed twice")
       ->excludes(rest)
       ->capture_default_str();
+  add_device_option(*command, options->device)->excludes(rest)->excludes(bodies);
   command->add_option("--json", options->json, "write every figure to this file");
   command->callback([options, bodies, &exit_code] {
     if (!options->json.empty()) require_place(options->json, {options->names.begin(), options->names.end()});

@@ -81,8 +81,7 @@ void write_kernels(const KernelOptions& options, bool material_chosen) {
     throw InputError(
         fmt::format("METHOD = '{}' has no kernel that could be written: {}", options.method, reason));
   }
-  const Dialect& dialect = *std::find_if(dialects().begin(), dialects().end(),
-                                         [&](const Dialect& known) { return known.name == options.dialect; });
+  const Dialect& dialect = dialect_named(options.dialect);
   const bool single = precision_in(dialect, options.precision) == Precision::single_precision;
   const Case description = find_case(options.case_name);
   if (!options.output.empty()) require_place(options.output, description.files);

@@ -20,6 +20,7 @@
 #include "comparison/comparison.hpp"
 #include "comparison/truth_estimate.hpp"
 #include "comparison/verdict.hpp"
+#include "device/opencl_processor.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
@@ -43,6 +44,7 @@ struct RunOptions {
   std::optional<std::string> accuracy = {};
   std::optional<std::string> sleep = {};
   int threads = 1;
+  std::string device = "cpu";
   std::shared_ptr<const Ranks> ranks;
   std::string output;
   std::string checkpoint;
@@ -116,6 +118,7 @@ MethodChoice choose_method(const RunOptions& options, const Given& given, const 
   }
   choice.threads = options.threads;
   choice.ranks = options.ranks;
+  choice.processor = processor_named(options.device);
   return choice;
 }
 
@@ -367,6 +370,7 @@ void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks>
       "as 0.1%; elements wake when others move near them; for quasi-static cases with a local load");
   command->add_option("-t,--threads", options->threads, "threads; the answer does not depend on their number")
       ->capture_default_str();
+  add_device_option(*command, options->device);
   command->add_option("-o,--output", options->output,
                       "result file (HDF5; an XDMF file for ParaView is written beside it)");
   command->add_option("--checkpoint", options->checkpoint,

@@ -15,10 +15,12 @@
 #include "app/task_pool.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
+#include "assembly/processor.hpp"
 #include "base/error.hpp"
 #include "comparison/published_table.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
+#include "device/opencl_processor.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
@@ -34,6 +36,7 @@ struct VerifyOptions {
   std::string json;
   std::string results;
   std::string precision = "double";
+  std::string device = "cpu";
   int threads = 0;
   bool no_costs = false;
 };
@@ -62,17 +65,32 @@ std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
   return subjects;
 }
 
+/// The limits of a case for methods that are computed here: a device may refuse some.
+std::vector<Expectation> checked_limits(const Subject& subject, const std::vector<Task>& tasks) {
+  std::vector<Expectation> checked = subject.references.comparison.expectations;
+  std::erase_if(checked, [&](const Expectation& expectation) {
+    return std::ranges::none_of(tasks, [&](const Task& task) {
+      return task.subject == &subject && task.choice.method == expectation.method;
+    });
+  });
+  return checked;
+}
+
 /// Every method on every scene, methods with a kappa at `auto` and along the case's kappa curve.
-std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision precision) {
+std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision precision,
+                             const std::shared_ptr<const Processor>& processor) {
   std::vector<Task> tasks;
   for (const auto& subject : subjects) {
     for (const MethodEntry& method : methods()) {
       if (method.is_condensed && !subject.scene.settings.quasi_static) continue;  // it has no motion
-      tasks.push_back({&subject, {std::string(method.name), {}, precision}});
+      MethodChoice choice{.method = std::string(method.name), .precision = precision, .processor = processor};
+      if (processor && !processor->refusal(subject.scene.materials, choice).empty()) continue;
+      tasks.push_back({&subject, choice});
       // A condensed method has the curve of the method that it condenses.
       if (!method.kappa_affects_equilibrium || method.is_condensed) continue;
       for (const double kappa : subject.references.comparison.kappas) {
-        tasks.push_back({&subject, {std::string(method.name), kappa, precision}});
+        choice.kappa = kappa;
+        tasks.push_back({&subject, choice});
       }
     }
   }
@@ -219,15 +237,14 @@ int verify(const VerifyOptions& options) {
     if (!options.json.empty()) require_place(options.json, subject.scene.settings.files);
   }
   if (!options.results.empty()) make_folder(options.results);
-  const auto tasks = make_tasks(subjects, precision);
+  const auto tasks = make_tasks(subjects, precision, processor_named(options.device));
   Outcome outcome = run_all(tasks, options);
-  if (!options.no_costs) add_step_costs(tasks, outcome, options.threads);
+  if (!options.no_costs && options.device == "cpu") add_step_costs(tasks, outcome, options.threads);
   const auto& [verdicts, answers] = outcome;
   std::vector<LimitCheck> limits;
   for (const auto& subject : subjects) {
     if (precision != Precision::double_precision) break;
-    const auto checks =
-        check_limits(subject.scene.settings.name, subject.references.comparison.expectations, verdicts);
+    const auto checks = check_limits(subject.scene.settings.name, checked_limits(subject, tasks), verdicts);
     limits.insert(limits.end(), checks.begin(), checks.end());
   }
   print_verdicts(verdicts);
@@ -256,6 +273,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->add_option("-p,--precision", options->precision,
                    "numbers to compute in, 'double' or 'float'; limits are checked in double only")
       ->capture_default_str();
+  add_device_option(*command, options->device);
   command->add_flag("--no-costs", options->no_costs, "do not measure the cost of steps");
   command->add_option("-j,--threads", options->threads, "runs at the same time; 0: one per processor")
       ->check(CLI::Range(0, 1024))

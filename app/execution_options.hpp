@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/App.hpp>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -58,6 +59,15 @@ inline void require_count(const char* option, int value, int most) {
 /// More threads than this count as a typing error.
 inline void require_threads(int threads) {
   require_count("--threads", threads, 1024);
+}
+
+/// The option for the processor, see `processor_named`.
+inline CLI::Option* add_device_option(CLI::App& command, std::string& device) {
+  return command
+      .add_option("--device", device,
+                  "processor that computes the forces of elements: 'cpu', 'opencl' for the first device of "
+                  "OpenCL, a graphics card if there is one, or 'opencl:2' for the second")
+      ->capture_default_str();
 }
 
 }  // namespace sandglass

@@ -253,7 +253,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     for (std::size_t level = 0; level < top; ++level) {
       const NodalVectors<Number> difference = from_modes(forces[level] - forces[top]);
       squares[level] = Number(Real(0));
-      for (int I = 0; I < 8; ++I) {
+      for (int I = 0; I < difference.rows; ++I) {
         Number square(Real(0));
         for (int i = 0; i < 3; ++i) {
           const Number moved = mobilities(I, i) * difference(I, i);

@@ -24,8 +24,8 @@ template <class Kernel>
 void require_accepted(const NodalVectors<double>& X) {
   if (Kernel::accepts(X)) return;
   Vector centre{};
-  for (int I = 0; I < 8; ++I) {
-    for (int i = 0; i < 3; ++i) centre[static_cast<std::size_t>(i)] += X(I, i) / 8.0;
+  for (int I = 0; I < X.rows; ++I) {
+    for (int i = 0; i < X.columns; ++i) centre[at(i)] += X(I, i) / X.rows;
   }
   throw InputError(
       fmt::format("mesh: the element with centre ({:.6g}, {:.6g}, {:.6g}) does not suit the method; {}; "
@@ -50,7 +50,7 @@ typename Kernel::template Element<Number> element_block(const Mesh& mesh, const 
   std::array<Number, numbers> block;
   for (int lane = 0; lane < Lanes<Number>::width; ++lane) {
     NodalVectors<double> X;
-    for (int I = 0; I < 8; ++I) {
+    for (int I = 0; I < X.rows; ++I) {
       const auto corner = static_cast<std::size_t>(I);
       const auto row = static_cast<std::size_t>(groups.places(face + corner / 4, corner % 4)[lane]) / 4;
       const Vector& point = mesh.points[static_cast<std::size_t>(node_of_row[row])];

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "assembly/method_entry.hpp"
+#include "assembly/processor.hpp"
 #include "base/error.hpp"
 
 namespace sandglass {
@@ -34,8 +35,10 @@ bool has_scalar_kernels() {
   return methods().front().scalar_double != nullptr;
 }
 
-AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& materials,
-                                     const MethodChoice& choice) {
+namespace {
+
+AnyInternalForce own_internal_force(const Mesh& mesh, const Materials& materials,
+                                    const MethodChoice& choice) {
   const MethodEntry& method = method_named(choice.method);
   require_sensible(choice, method);
   for (const Material& material : materials.list) {
@@ -57,6 +60,19 @@ AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& material
     return method.packed_double.assemble(mesh, materials, settings, team);
   }
   return method.packed_float.assemble(mesh, materials, settings, team);
+}
+
+}  // namespace
+
+AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& materials,
+                                     const MethodChoice& choice) {
+  AnyInternalForce own = own_internal_force(mesh, materials, choice);
+  if (choice.processor == nullptr) return own;
+  return std::visit(
+      [&](auto&& elements) -> AnyInternalForce {
+        return choice.processor->forces(std::move(elements), mesh, materials, choice);
+      },
+      std::move(own));
 }
 
 template <class Real>

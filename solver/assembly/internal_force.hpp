@@ -121,7 +121,8 @@ using AnyInternalForce =
 /// The elements of `mesh` with the chosen method; the only place where the choice is dispatched. Hourglass
 /// controls that damp need densities; with zero they give no force. Throws InputError for an unknown method
 /// (listing the known ones), for a kappa given to a method that takes none, for a law that the method does
-/// not support, for values out of range, and for scalar kernels in single precision, which do not exist.
+/// not support, for values out of range, for scalar kernels in single precision, which do not exist, and for
+/// what the chosen processor does not support.
 AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& materials,
                                      const MethodChoice& choice);
 

@@ -24,6 +24,8 @@ enum class KernelWidth { pack, scalar };
 /// The default accuracy of adaptive methods.
 inline constexpr double default_accuracy = 0.003;
 
+class Processor;
+
 /// The user's choices in addition to the case.
 struct MethodChoice {
   std::string method;
@@ -34,6 +36,7 @@ struct MethodChoice {
   KernelWidth kernel = KernelWidth::pack;
   KappaModulus kappa_modulus = KappaModulus::p_wave;
   double accuracy = default_accuracy;  ///< of an adaptive method: displacement error over the largest imposed
+  std::shared_ptr<const Processor> processor = nullptr;  ///< that computes forces; none: this one
 };
 
 }  // namespace sandglass

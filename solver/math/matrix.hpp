@@ -12,6 +12,8 @@ namespace sandglass {
 /// kernels time.
 template <class T, int R, int C>
 struct Matrix {
+  static constexpr int rows = R, columns = C;
+
   std::array<T, static_cast<std::size_t>(R) * static_cast<std::size_t>(C)> entries;
 
   constexpr T& operator()(int i, int j) { return entries[index(i, j)]; }

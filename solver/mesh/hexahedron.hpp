@@ -33,6 +33,16 @@ constexpr Matrix<double, 8, 4> hourglass_base_vectors() {
   return Gamma;
 }
 
+/// Values of the trilinear shape functions at a parent point.
+constexpr std::array<double, 8> shape_functions(const std::array<double, 3>& xi) {
+  std::array<double, 8> N{};
+  for (int I = 0; I < 8; ++I) {
+    N[static_cast<std::size_t>(I)] = (1.0 + corner_signs(I, 0) * xi[0]) * (1.0 + corner_signs(I, 1) * xi[1]) *
+                                     (1.0 + corner_signs(I, 2) * xi[2]) / 8.0;
+  }
+  return N;
+}
+
 /// dN_I/dxi_j of the trilinear shape functions at a parent point.
 constexpr NodalVectors<double> parent_gradient(const std::array<double, 3>& xi) {
   NodalVectors<double> gradient;

@@ -13,15 +13,6 @@
 
 namespace sandglass {
 
-std::array<double, 8> shape_functions(const Vector& xi) {
-  std::array<double, 8> N{};
-  for (int I = 0; I < 8; ++I) {
-    N[at(I)] = (1.0 + corner_signs(I, 0) * xi[0]) * (1.0 + corner_signs(I, 1) * xi[1]) *
-               (1.0 + corner_signs(I, 2) * xi[2]) / 8.0;
-  }
-  return N;
-}
-
 double parent_distance(const Vector& xi) {
   return std::max({std::abs(xi[0]), std::abs(xi[1]), std::abs(xi[2])});
 }
@@ -31,7 +22,7 @@ namespace {
 Vector trilinear(const NodalVectors<double>& nodal, const Vector& xi) {
   const auto N = shape_functions(xi);
   Vector value{};
-  for (int I = 0; I < 8; ++I) {
+  for (int I = 0; I < nodal.rows; ++I) {
     for (int i = 0; i < 3; ++i) {
       value[at(i)] += N[at(I)] * nodal(I, i);
     }
@@ -44,7 +35,7 @@ Vector trilinear(const NodalVectors<double>& nodal, const Vector& xi) {
 std::optional<Vector> parent_point(NodalVectors<double> nodes, const Vector& X) {
   constexpr int most_steps = 25;
   constexpr double converged = 1e-13, far_away = 10.0;
-  for (int I = 0; I < 8; ++I) {
+  for (int I = 0; I < nodes.rows; ++I) {
     for (int i = 0; i < 3; ++i) nodes(I, i) -= X[at(i)];
   }
   Vector xi{};

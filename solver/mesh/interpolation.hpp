@@ -13,9 +13,6 @@ struct ElementPoint {
 /// The distance of a parent point from the centre in the maximum norm; at most 1 inside the element.
 double parent_distance(const Vector& xi);
 
-/// Values of the trilinear shape functions at a parent point.
-std::array<double, 8> shape_functions(const Vector& xi);
-
 /// The element that contains each point (m), or for a point outside the mesh the closest one in parent
 /// coordinates. Throws InputError for a point that is far from the mesh.
 std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& points);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -60,11 +61,21 @@ std::vector<std::string> names_in(const std::map<std::string, Set>& sets) {
 /// The rows of a nodal field at the nodes of one element.
 inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& cell) {
   NodalVectors<double> rows;
-  for (int I = 0; I < 8; ++I) {
+  for (int I = 0; I < rows.rows; ++I) {
     const Vector& row = field[at(cell[at(I)])];
     for (int i = 0; i < 3; ++i) rows(I, i) = row[at(i)];
   }
   return rows;
+}
+
+/// Adds numbers of rows, one row for each node of an element, to a nodal field.
+template <class T, class Number = std::identity>
+void scatter_add(const NodalVectors<T>& rows, const Hexahedron& cell, NodalField& field,
+                 const Number& number = {}) {
+  for (int I = 0; I < rows.rows; ++I) {
+    Vector& row = field[at(cell[at(I)])];
+    for (int i = 0; i < 3; ++i) row[at(i)] += number(rows(I, i));
+  }
 }
 
 /// The vectors of a nodal field at some nodes.

@@ -7,7 +7,7 @@ NodeElements::NodeElements(const Mesh& mesh) : first_(mesh.points.size() + 1, 0)
     for (const int node : cell) ++first_[at(node) + 1];
   }
   for (std::size_t n = 1; n < first_.size(); ++n) first_[n] += first_[n - 1];
-  elements_.resize(8 * mesh.cells.size());
+  elements_.resize(first_.back());
   auto next = first_;
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
     for (const int node : mesh.cells[e]) elements_[next[at(node)]++] = static_cast<int>(e);

@@ -116,7 +116,7 @@ class Elements final : public ElementLevel {
         const std::size_t cell = at.pack * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
         if (layout_.elements[cell] < 0) continue;
         columns.clear();
-        for (std::size_t I = 0; I < 8; ++I) {
+        for (std::size_t I = 0; I < std::size_t{b.rows}; ++I) {
           const std::size_t row = layout_.places(at.face + I / 4, I % 4)[lane] / 4;
           std::array<float, 3> column;
           for (int i = 0; i < 3; ++i) {
@@ -273,7 +273,7 @@ class Elements final : public ElementLevel {
   static Number eigenvalue_bound(const Block& block) {
     const NodalVectors<Number> g = nodal_gradients(block);
     NodalVectors<Number> x;
-    for (int I = 0; I < 8; ++I) {
+    for (int I = 0; I < x.rows; ++I) {
       for (int i = 0; i < 3; ++i)
         x(I, i) = Number(1.0f + 0.37f * static_cast<float>((7 * I + 5 * i) % 11 - 5));
     }
@@ -283,7 +283,7 @@ class Elements final : public ElementLevel {
       const NodalVectors<Number> y =
           from_modes(forces(block, u, OnePoint::mean_gradient(u, block.body), Number(0.0f)));
       Number square(0.0f);
-      for (int I = 0; I < 8; ++I) {
+      for (int I = 0; I < x.rows; ++I) {
         const Triple<Number> D = diagonal(block, g, I);
         for (int i = 0; i < 3; ++i) {
           x(I, i) = y(I, i) / D(i, 0);
@@ -334,7 +334,7 @@ class Elements final : public ElementLevel {
   [[gnu::flatten]] void add_diagonals(const Layout::Chunk& chunk) {
     for_each_pack(layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
       const NodalVectors<Number> g = nodal_gradients(elements_[at.pack]);
-      for (std::size_t I = 0; I < 8; ++I) {
+      for (std::size_t I = 0; I < std::size_t{g.rows}; ++I) {
         const Triple<Number> D = diagonal(elements_[at.pack], g, static_cast<int>(I));
         scatter_add<Number>({D(0, 0), D(1, 0), D(2, 0)}, numbers_of(stiffness_),
                             layout_.places(at.face + I / 4, I % 4));

@@ -66,12 +66,12 @@ class SlopesOf {
                                              sweep_.mesh.points[at(sweep_.mesh.cells[e][b])]));
     const double step = share_of_edge * shortest;
     NodalVectors<double> derivative{};
-    for (std::size_t n = 0; n < 24; ++n) {
+    for (std::size_t n = 0; n < X.entries.size(); ++n) {
       for (const double side : {1.0, -1.0}) {
         auto moved = X;
         moved.entries[n] += side * step;
         const ElementSlopes f = forces(e, moved);
-        for (std::size_t k = 0; k < 24; ++k)
+        for (std::size_t k = 0; k < f.entries.size(); ++k)
           derivative.entries[n] += side / (2.0 * step) * f.entries[k].value * v.entries[k];
       }
     }
@@ -85,7 +85,7 @@ class SlopesOf {
     auto motion = motion_of(e, X);
     if constexpr (Kernel::averages_over_nodes) {
       const auto& volumes = volumes_[sweep_.alike[sweep_.materials.of(e)]];
-      for (std::size_t corner = 0; corner < 8; ++corner) {
+      for (std::size_t corner = 0; corner < motion.dilatation.size(); ++corner) {
         const auto& [change, reference] = volumes[at(sweep_.mesh.cells[e][corner])];
         motion.dilatation[corner] = change / reference;
       }
@@ -111,7 +111,7 @@ class SlopesOf {
     const Hexahedron& cell = sweep_.mesh.cells[e];
     ElementMotion<Slope> motion{};
     NodalVectors<Slope> u;
-    for (int I = 0; I < 8; ++I) {
+    for (int I = 0; I < u.rows; ++I) {
       const std::size_t node = at(cell[at(I)]);
       for (int i = 0; i < 3; ++i) u(I, i) = {sweep_.u[node][at(i)], sweep_.motion[node][at(i)]};
     }
@@ -129,7 +129,7 @@ class SlopesOf {
     for (std::size_t e = 0; e < sweep_.mesh.cells.size(); ++e) {
       const auto X = gather(sweep_.mesh.points, sweep_.mesh.cells[e]);
       const auto own = Kernel::nodal_volumes(motion_of(e, X), element_of(e, X));
-      for (std::size_t corner = 0; corner < 8; ++corner) {
+      for (std::size_t corner = 0; corner < own.change.size(); ++corner) {
         auto& [change, reference] =
             volumes_[sweep_.alike[sweep_.materials.of(e)]][at(sweep_.mesh.cells[e][corner])];
         change = change + own.change[corner];

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "mesh/hexahedron.hpp"
 #include "mesh/interpolation.hpp"
 #include "problem/scene_rules.hpp"
 

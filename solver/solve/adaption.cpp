@@ -21,7 +21,7 @@ std::vector<double> nodal_mobilities(const Scene& scene) {
     const double mu = moduli[scene.materials.of(e)];
     for (const auto& xi : gauss_points()) {
       const PointGradient point = point_gradient(X, xi);
-      for (int I = 0; I < 8; ++I) {
+      for (int I = 0; I < point.gradient.rows; ++I) {
         double square = 0.0;
         for (int i = 0; i < 3; ++i) square += point.gradient(I, i) * point.gradient(I, i);
         stiffness[static_cast<std::size_t>(cell[static_cast<std::size_t>(I)])] += mu * point.measure * square;

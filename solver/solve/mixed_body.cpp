@@ -167,7 +167,7 @@ std::vector<float> MixedBody<Real>::stiffening_of_laws() const {
     if (!law) return;
     const auto element = OnePoint::geometry(to_modes(gather(mesh_.points, mesh_.cells[e])));
     NodalVectors<double> u;
-    for (int I = 0; I < 8; ++I) {
+    for (int I = 0; I < u.rows; ++I) {
       const auto& row = linearized_at_[at(layout.row_of_node[at(mesh_.cells[e][at(I)])])];
       for (int i = 0; i < 3; ++i) u(I, i) = row[at(i)];
     }

@@ -82,7 +82,7 @@ void for_each_force(const StaticTangent& tangent, const Materials& materials, co
 /// The power of an element's forces at nodal velocities v.
 double power(const Hexahedron& cell, const ElementSlopes& f, const NodalField& v) {
   double sum = 0.0;
-  for (int I = 0; I < 8; ++I) {
+  for (int I = 0; I < f.rows; ++I) {
     for (int i = 0; i < 3; ++i) sum += f(I, i).value * v[at(cell[at(I)])][at(i)];
   }
   return sum;
@@ -149,10 +149,8 @@ void add_change_of_forces(const StaticTangent& tangent, const std::vector<std::v
       materials.list[m].law = moved(own.list[m].law, by);
     }
     for_each_force(tangent, materials, [&](std::size_t e, const ElementSlopes& f) {
-      const Hexahedron& cell = tangent.model().scene().mesh.cells[e];
-      for (int I = 0; I < 8; ++I) {
-        for (int i = 0; i < 3; ++i) forces[at(cell[at(I)])][at(i)] += term.weight / length * f(I, i).value;
-      }
+      scatter_add(f, tangent.model().scene().mesh.cells[e], forces,
+                  [&](const Dual<double>& component) { return term.weight / length * component.value; });
     });
   }
 }
@@ -240,10 +238,7 @@ Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, co
   found.points = zeros(tangent);
   for_each_shape_derivative(tangent.model(), tangent.levels(), tangent.displacements(), v,
                             [&](std::size_t e, const NodalVectors<double>& own) {
-                              for (int I = 0; I < 8; ++I) {
-                                Vector& sum = found.points[at(scene.mesh.cells[e][at(I)])];
-                                for (int i = 0; i < 3; ++i) sum[at(i)] += own(I, i);
-                              }
+                              scatter_add(own, scene.mesh.cells[e], found.points);
                             });
   return found;
 }

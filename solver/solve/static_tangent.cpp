@@ -83,10 +83,8 @@ NodalField StaticTangent::product(const NodalField& a) const {
   if (std::ranges::all_of(a, [](const Vector& row) { return row == Vector{}; })) return forces;
   for_each_element_slope(model_, model_.scene().materials, levels_, u_, a,
                          [&](std::size_t e, const ElementSlopes& f) {
-                           const Hexahedron& cell = model_.scene().mesh.cells[e];
-                           for (int I = 0; I < 8; ++I) {
-                             for (int i = 0; i < 3; ++i) forces[at(cell[at(I)])][at(i)] += f(I, i).slope;
-                           }
+                           scatter_add(f, model_.scene().mesh.cells[e], forces,
+                                       [](const Dual<double>& component) { return component.slope; });
                          });
   Rows<double> rows = to_rows<double>(forces, layout());
   add_stiffness_of_loads(to_rows<double>(a, layout()), rows);

@@ -1,5 +1,7 @@
 #include "written/dialects.hpp"
 
+#include <algorithm>
+
 namespace sandglass {
 
 const std::vector<Dialect>& dialects() {
@@ -12,6 +14,7 @@ const std::vector<Dialect>& dialects() {
        .begin = "#include <tgmath.h>\n\n",
        .array = "const {real}* restrict {name}",
        .results = "{real}* restrict {name}",
+       .indices = "const int* restrict {name}",
        .kernel = "void {name}(long count, {arguments}) {{\n  for (long e = 0; e < count; ++e) {{\n"},
       {.name = "opencl",
        .language = "OpenCL C",
@@ -19,6 +22,7 @@ const std::vector<Dialect>& dialects() {
        .bits_of_float = "int",
        .array = "__global const {real}* restrict {name}",
        .results = "__global {real}* restrict {name}",
+       .indices = "__global const int* restrict {name}",
        .kernel = "__kernel void {name}(long count, {arguments}) {{\n  const long e = get_global_id(0);\n"
                  "  if (e < count) {{\n"},
       {.name = "cuda",
@@ -28,6 +32,7 @@ const std::vector<Dialect>& dialects() {
        .local = "__device__ ",
        .array = "const {real}* __restrict__ {name}",
        .results = "{real}* __restrict__ {name}",
+       .indices = "const int* __restrict__ {name}",
        .kernel = "extern \"C\" __global__ void {name}(long long count, {arguments}) {{\n"
                  "  const long long e = blockIdx.x * (long long)blockDim.x + threadIdx.x;\n"
                  "  if (e < count) {{\n"},
@@ -45,11 +50,16 @@ const std::vector<Dialect>& dialects() {
        .select = "select({b}, {a}, {mask})",
        .array = "@group(0) @binding({number}) var<storage, read> {name}: array<f32>;\n",
        .results = "@group(0) @binding({number}) var<storage, read_write> {name}: array<f32>;\n",
+       .indices = "@group(0) @binding({number}) var<storage, read> {name}: array<i32>;\n",
        .between = "",
        .kernel = "{arguments}\n@compute @workgroup_size(64) fn {name}(@builtin(global_invocation_id) id: "
                  "vec3u) {{\n  let count = arrayLength(&f) / 24;\n  let e = id.x;\n  if (e < count) {{\n",
        .keeps_sums = false}};
   return list;
+}
+
+const Dialect& dialect_named(std::string_view name) {
+  return *std::ranges::find(dialects(), name, &Dialect::name);
 }
 
 }  // namespace sandglass

@@ -30,6 +30,7 @@ struct Dialect {
 
   std::string_view array;           ///< an argument of the kernel, which it reads; {number} of them
   std::string_view results;         ///< the same, which it sets
+  std::string_view indices;         ///< the same of integers, which it reads
   std::string_view between = ", ";  ///< two of them
   std::string_view kernel;          ///< from the head of the kernel to the loop over elements e
   bool keeps_sums = true;           ///< whether its compilers keep the order of sums
@@ -39,5 +40,8 @@ struct Dialect {
 
 /// The list of dialects. A new one is an entry.
 const std::vector<Dialect>& dialects();
+
+/// The dialect of this name, which must be one of the list.
+const Dialect& dialect_named(std::string_view name);
 
 }  // namespace sandglass

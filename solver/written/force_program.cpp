@@ -42,14 +42,14 @@ ForceProgram record(const CalledLaw& law, bool has_fibres) {
   using Element = typename K::template Element<Recorded>;
   Tape tape;
   ForceProgram force;
-  const auto add = [&](std::string_view name, std::size_t bytes, std::string meaning) {
-    force.arrays.push_back({name, static_cast<int>(bytes / sizeof(Recorded)), std::move(meaning)});
+  const auto add = [&](std::string_view name, std::size_t bytes, std::string meaning, bool is_nodal = false) {
+    force.arrays.push_back({name, static_cast<int>(bytes / sizeof(Recorded)), std::move(meaning), is_nodal});
   };
   ElementMotion<Recorded> motion;
-  add("u", sizeof(NodalVectors<Recorded>), "displacements, m: component i of node I is number 3 I + i");
+  add("u", sizeof(NodalVectors<Recorded>), "displacements, m: component i of node I is number 3 I + i", true);
   motion.u = to_modes(inputs<NodalVectors<Recorded>>(tape));
   if constexpr (K::needs_coordinates) {
-    add("X", sizeof(NodalVectors<Recorded>), "reference coordinates, m, in the order of u");
+    add("X", sizeof(NodalVectors<Recorded>), "reference coordinates, m, in the order of u", true);
     motion.X = to_modes(inputs<NodalVectors<Recorded>>(tape));
   }
   const auto element = inputs<Element>(tape);
@@ -88,6 +88,21 @@ ForceProgram force_program(std::string_view method, const CalledLaw& law, bool h
     }
   });
   return force;
+}
+
+std::vector<double> element_constants(std::string_view method, const NodalVectors<double>& X,
+                                      const CalledLaw& law, const MaterialAxes<double>* axes,
+                                      const HourglassSettings& settings) {
+  std::vector<double> numbers;
+  with_named_type(Methods{}, method, [&]<class Method>() {
+    using Element = typename Kernel<Method>::template Element<double>;
+    if constexpr (!std::is_empty_v<Element>) {
+      const Element element = Kernel<Method>::precompute(X, law.with_axes(axes), settings);
+      numbers.resize(sizeof element / sizeof(double));
+      std::memcpy(numbers.data(), &element, sizeof element);
+    }
+  });
+  return numbers;
 }
 
 }  // namespace sandglass

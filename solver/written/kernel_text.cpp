@@ -62,7 +62,8 @@ Program program_of(Operation operation) {
 template <class Real>
 class Writer {
  public:
-  explicit Writer(const Dialect& dialect) : dialect_(dialect) {}
+  Writer(const Dialect& dialect, NodalValues nodal_values)
+      : dialect_(dialect), by_places_(nodal_values == NodalValues::of_nodes) {}
 
   std::string text(const ForceProgram& force, const KernelTitle& title) const {
     std::string text = comment(force, title) + std::string(dialect_.begin) + filled(dialect_.bits) + "\n";
@@ -73,6 +74,7 @@ class Writer {
     const auto add = [&](std::string_view format, std::string_view name) {
       arguments.push_back(filled(format, fmt::arg("name", name), fmt::arg("number", arguments.size())));
     };
+    if (by_places_) add(dialect_.indices, "places");
     for (const KernelArray& array : force.arrays) {
       add(dialect_.array, array.name);
       for (int k = 0; k < array.numbers; ++k) numbers.push_back(fmt::format("{}{}", array.name, k));
@@ -81,9 +83,18 @@ class Writer {
     text += filled(dialect_.kernel, fmt::arg("name", title.name),
                    fmt::arg("arguments", fmt::to_string(fmt::join(arguments, dialect_.between))));
     const std::string indent(4, ' ');
+    for (int I = 0; by_places_ && I < NodalVectors<Real>::rows; ++I) {
+      text += indent +
+              filled(dialect_.mask, fmt::arg("name", fmt::format("place{}", I)),
+                     fmt::arg("value", entry("places", I))) +
+              "\n";
+    }
     for (const KernelArray& array : force.arrays) {
       for (int k = 0; k < array.numbers; ++k) {
-        text += indent + value(fmt::format("{}{}", array.name, k), entry(array.name, k)) + "\n";
+        const std::string number = by_places_ && array.is_nodal
+                                       ? fmt::format("{}[place{} + {}]", array.name, k / 3, k % 3)
+                                       : entry(array.name, k);
+        text += indent + value(fmt::format("{}{}", array.name, k), number) + "\n";
       }
     }
     const auto results = statements(force.program, numbers, indent, text);
@@ -96,12 +107,17 @@ class Writer {
  private:
   static constexpr bool single = std::is_same_v<Real, float>;
 
-  static std::string comment(const ForceProgram& force, const KernelTitle& title) {
+  std::string comment(const ForceProgram& force, const KernelTitle& title) const {
     std::string text;
     for (const auto& line : title.comment) text += fmt::format("// {}\n", line);
     text += "// Arrays, with number k of element e at k * count + e:\n";
-    for (const auto& [name, numbers, meaning] : force.arrays) {
-      text += fmt::format("//   {} ({} numbers): {}\n", name, numbers, meaning);
+    for (const KernelArray& array : force.arrays) {
+      text += fmt::format("//   {} ({} numbers): {}\n", array.name, array.numbers, array.meaning);
+    }
+    if (by_places_) {
+      text +=
+          "//   places (8 numbers): component i of the element's node I is at places[I * count + e] + i of a "
+          "nodal array\n";
     }
     const auto count = [&](auto... operations) {
       return std::count_if(force.program.steps.begin(), force.program.steps.end(),
@@ -248,16 +264,19 @@ class Writer {
   }
 
   const Dialect& dialect_;
+  bool by_places_;
 };
 
 }  // namespace
 
 template <class Real>
-std::string kernel_text(const ForceProgram& force, const Dialect& dialect, const KernelTitle& title) {
-  return Writer<Real>(dialect).text(force, title);
+std::string kernel_text(const ForceProgram& force, const Dialect& dialect, const KernelTitle& title,
+                        NodalValues nodal_values) {
+  return Writer<Real>(dialect, nodal_values).text(force, title);
 }
 
-template std::string kernel_text<double>(const ForceProgram&, const Dialect&, const KernelTitle&);
-template std::string kernel_text<float>(const ForceProgram&, const Dialect&, const KernelTitle&);
+template std::string kernel_text<double>(const ForceProgram&, const Dialect&, const KernelTitle&,
+                                         NodalValues);
+template std::string kernel_text<float>(const ForceProgram&, const Dialect&, const KernelTitle&, NodalValues);
 
 }  // namespace sandglass

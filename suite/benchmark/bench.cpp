@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "assembly/method_entry.hpp"
+#include "assembly/processor.hpp"
 #include "base/memory.hpp"
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/cost.hpp"
@@ -82,15 +83,19 @@ Group make_group(const Scene& scene, const OwnMotions& motions, const std::vecto
   return group;
 }
 
-/// Removes variants that would take too long to set up from the list, and makes their records.
+/// Removes variants that the device refuses, or that would take too long to set up, from the list, and makes
+/// their records.
 std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>& variants) {
   const std::size_t elements = scene.mesh.cells.size(), nodes = scene.mesh.points.size();
   std::vector<BenchRecord> records;
-  if (nodes <= most_condensed_nodes) return records;
   std::erase_if(variants, [&](const MethodChoice& choice) {
-    if (!method_named(choice.method).is_condensed) return false;
-    const std::string why = fmt::format("left out: factorising {} nodes takes too long; at most {} are timed",
-                                        nodes, most_condensed_nodes);
+    std::string why = choice.processor ? choice.processor->refusal(scene.materials, choice) : "";
+    if (method_named(choice.method).is_condensed && nodes > most_condensed_nodes) {
+      why = fmt::format("factorising {} nodes takes too long; at most {} are timed", nodes,
+                        most_condensed_nodes);
+    }
+    if (why.empty()) return false;
+    why.insert(0, "left out: ");
     records.push_back({scene.settings.name, elements, nodes, choice, why, 0.0, 0.0, {}, {}, {}, {}});
     return true;
   });
@@ -99,7 +104,7 @@ std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>
 
 /// Whether two records differ only in the method, or only in kernel and precision.
 bool same_numbers(const MethodChoice& a, const MethodChoice& b) {
-  return a.kernel == b.kernel && a.precision == b.precision && a.threads == b.threads;
+  return kernel_name(a) == kernel_name(b) && a.precision == b.precision && a.threads == b.threads;
 }
 bool same_method(const MethodChoice& a, const MethodChoice& b) {
   return a.method == b.method && a.threads == b.threads;
@@ -115,8 +120,9 @@ bool is_disturbed(const BenchRecord& record) {
   return record.speed && record.speed->ns.upper_quartile > most_spread * record.speed->ns.lower_quartile;
 }
 
-std::string_view name_of(KernelWidth kernel) {
-  return kernel == KernelWidth::pack ? "pack" : "scalar";
+std::string_view kernel_name(const MethodChoice& choice) {
+  if (choice.processor != nullptr) return "device";
+  return choice.kernel == KernelWidth::pack ? "pack" : "scalar";
 }
 
 std::vector<MethodChoice> variants_of(const BenchPlan& plan) {
@@ -129,6 +135,9 @@ std::vector<MethodChoice> variants_of(const BenchPlan& plan) {
       if (has_scalar_kernels()) {
         variants.push_back({.method = method, .threads = threads, .kernel = KernelWidth::scalar});
       }
+      if (plan.processor == nullptr || threads != plan.threads.front()) continue;
+      for (const Precision precision : plan.precisions)
+        variants.push_back({.method = method, .precision = precision, .processor = plan.processor});
     }
   }
   return variants;

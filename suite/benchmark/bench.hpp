@@ -15,13 +15,15 @@
 
 namespace sandglass {
 
-std::string_view name_of(KernelWidth kernel);  ///< "pack" or "scalar"
+/// What computes the forces: "pack", "scalar", or "device" for another processor.
+std::string_view kernel_name(const MethodChoice& choice);
 
 /// The variants to measure.
 struct BenchPlan {
   std::vector<std::string> methods;
   std::vector<Precision> precisions;
   std::vector<int> threads;
+  std::shared_ptr<const Processor> processor = nullptr;  ///< to measure too
   MeasureSettings settings;
 };
 

@@ -24,7 +24,7 @@ Json to_record(const BenchRecord& record) {
           {"elements", record.elements},
           {"nodes", record.nodes},
           {"method", choice.method},
-          {"kernel", name_of(choice.kernel)},
+          {"kernel", kernel_name(choice)},
           {"precision", name_of(choice.precision)},
           {"threads", choice.threads},
           {"status", record.status},

@@ -153,7 +153,7 @@ double element_size(const Scene& scene) {
   double smallest = std::numeric_limits<double>::infinity();  // squared
   for (const auto& cell : scene.mesh.cells) {
     const NodalVectors<double> X = gather(scene.mesh.points, cell);
-    for (int I = 0; I < 8; ++I) {
+    for (int I = 0; I < X.rows; ++I) {
       for (int J = 0; J < I; ++J) {
         const double x = X(I, 0) - X(J, 0), y = X(I, 1) - X(J, 1), z = X(I, 2) - X(J, 2);
         smallest = std::min(smallest, x * x + y * y + z * z);

@@ -9,7 +9,7 @@ namespace sandglass {
 
 double scaled_jacobian(const NodalVectors<double>& X) {
   double smallest = 1.0;
-  for (int corner = 0; corner < 8; ++corner) {
+  for (int corner = 0; corner < corner_signs.rows; ++corner) {
     const std::array<double, 3> at{corner_signs(corner, 0), corner_signs(corner, 1), corner_signs(corner, 2)};
     Tensor<double> edges = parent_jacobian(X, at);  // columns: half edge vectors at the corner
     for (int j = 0; j < 3; ++j) {

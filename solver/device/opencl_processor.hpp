@@ -1,0 +1,12 @@
+#pragma once
+
+#include "assembly/processor.hpp"
+
+namespace sandglass {
+
+/// The processor that a user names: "opencl" for the first device of OpenCL, graphics cards first, or
+/// "opencl:2" for the second. Null for "cpu". Throws InputError, which lists the devices of this machine, for
+/// anything else.
+std::shared_ptr<const Processor> processor_named(const std::string& name);
+
+}  // namespace sandglass

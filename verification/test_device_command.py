@@ -1,0 +1,46 @@
+"""`--device opencl` of run, verify and bench; device_test.cpp compares its forces and motions."""
+
+import json
+
+import pytest
+from command_line import sandglass
+
+NONE = sandglass("run", "column", "--device", "none", code=2).stderr
+pytestmark = pytest.mark.skipif(
+    "opencl:1" not in NONE, reason="no OpenCL device: ci/setup test installs pocl-opencl-icd"
+)
+
+
+def test_limits_of_dynamic_cases_hold_on_a_device():
+    cases = "loaded-block", "plucked-beam", "pushed-ellipsoid"
+    printed = sandglass("verify", *cases, "--device", "opencl", code=0).stdout
+    assert printed.count("holds ") >= 9
+    assert "tl-adaptive" not in printed  # a device cannot compute it, which breaks no limit
+
+
+def test_a_static_answer_is_found_with_the_forces_of_a_device():
+    printed = sandglass("run", "column", "-m", "tl-mean-dilatation", "--device", "opencl", code=0)
+    assert "against the golden: max" in printed.stdout
+
+
+def test_bench_times_the_device_beside_this_processor(tmp_path):
+    options = "-m tl-perturbation -m tl-adaptive -t 1 -r 1 -p float --device opencl --json".split()
+    sandglass("bench", "column", *options, tmp_path / "bench.json", code=0)
+    rows = json.loads((tmp_path / "bench.json").read_text())["records"]
+    found = {(row["method"], row["kernel"]): row["status"] for row in rows}
+    assert found["tl-perturbation", "pack"] == found["tl-perturbation", "device"] == "ok"
+    assert found["tl-adaptive", "device"].startswith("left out: method 'tl-adaptive'")
+
+
+@pytest.mark.parametrize(
+    "arguments, reason",
+    [
+        (("run", "column", "--device", "cuda"), "'cuda' is no processor of this machine; allowed: cpu"),
+        (("run", "column", "--device", "opencl:99"), "is no processor of this machine"),
+        (("run", "brain-hold", "-m", "tl-perturbation", "--device", "opencl"), "viscoelastic"),
+        (("run", "pushed-ellipsoid", "-m", "t4-anp", "--device", "opencl"), "averages over nodes"),
+        (("bench", "column", "--rest", "--device", "opencl"), "--device"),
+    ],
+)
+def test_what_a_device_cannot_do_is_refused(arguments, reason):
+    assert reason in sandglass(*arguments, code=2).stderr
