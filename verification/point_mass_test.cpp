@@ -52,7 +52,7 @@ double weight_of(const Scene& scene) {
 /// the whole weight. A share that differs between nodes would bend the head; a mass without weight would
 /// leave a quarter of the motion.
 TEST(PointMass, hangs_on_a_column_with_its_weight) {
-  CaseOnMesh problem = column({2, 2, 7});
+  CaseOnMesh problem = column({1, 1, 7});
   const double g = 0.1;
   problem.description.forces.of<Gravity>() = {{{0.0, 0.0, -g}}};
   const Scene scene = make_scene(problem);
@@ -63,7 +63,7 @@ TEST(PointMass, hangs_on_a_column_with_its_weight) {
   ASSERT_TRUE(answer.converged);
   const double expected = -(total + 0.5 * of_column) * g * height / (area * modulus());
   double mean = 0.0;
-  for (const int node : scene.sets.at("head")) mean += answer.u[at(node)][2] / 9.0;
+  for (const int node : scene.sets.at("head")) mean += answer.u[at(node)][2] / 4.0;
   EXPECT_NEAR(mean / expected, 1.0, 1e-7);
   const NodalField internal = internal_forces(model, answer.u);
   double reaction = 0.0;
@@ -78,18 +78,18 @@ TEST(PointMass, hangs_on_a_column_with_its_weight) {
 /// mass, omega would be twice as large.
 TEST(PointMass, swings_with_the_period_of_a_mass_on_a_spring) {
   CaseOnMesh problem = column({1, 1, 1});
-  const double omega = std::sqrt(area * modulus() / height / (total + 0.5 * of_column)), dt = 0.2 / omega;
+  const double omega = std::sqrt(area * modulus() / height / (total + 0.5 * of_column)), dt = 0.08 / omega;
   const double speed = 1e-6;  // so that the motion is linear to 1e-5
   Case& description = problem.description;
   description.quasi_static = false;
   description.velocities = {{.set = "head", .value = {0.0, 0.0, speed}}};
-  description.dynamics = {.duration = 40 * dt, .time_step = dt, .frames = 1000};
+  description.dynamics = {.duration = 100 * dt, .time_step = dt, .frames = 1000};
   const Scene scene = make_scene(problem);
   const double phi = 2.0 * std::asin(0.5 * omega * dt);
   for (const char* method : {"tl-mean-dilatation", "tl-perturbation", "tl-full"}) {
     Recorder recorder;
     integrate(Model(scene, {method}), recorder);
-    ASSERT_GE(recorder.frames.size(), 40U);
+    ASSERT_GE(recorder.frames.size(), 100U);
     for (const Frame& frame : recorder.frames) {
       const double n = std::round(frame.time / dt), u = speed * dt * std::sin(n * phi) / std::sin(phi);
       for (const int node : scene.sets.at("head"))
