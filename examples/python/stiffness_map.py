@@ -2,7 +2,7 @@
 
 Usage: /usr/bin/python3 examples/python/stiffness_map.py
 A block with a stiff inclusion is sheared and pulled by forces. Known are these and the
-displacements of its surface, with noise of 1 % of the largest. Each element has a Young's modulus
+displacements of its surface, with noise of 0.3 % of the largest. Each element has a Young's modulus
 of its own. Minimised is the misfit over the noise plus a penalty on the differences of log E
 between elements that share a face; its weight is the largest for which the misfit is that of the
 noise (Morozov's principle). Exit code 0.
@@ -23,7 +23,7 @@ import sandglass as sg
 ELEMENTS = (4, 4, 6)
 SIZE = (0.04, 0.04, 0.06)
 SOFT, STIFF = 3e3, 9e3  # Pa
-NOISE = 0.01  # of the largest displacement
+NOISE = 0.003  # of the largest displacement
 
 
 def block(moduli):
@@ -45,9 +45,11 @@ def block(moduli):
 
 def centres():
     """The centres (m, 3) of the elements, m, in the order of the mesh."""
-    return sg.Mesh.of(sg.Box(size=SIZE, elements=ELEMENTS)).points[
-        sg.Mesh.of(sg.Box(size=SIZE, elements=ELEMENTS)).cells
-    ].mean(axis=1)
+    return (
+        sg.Mesh.of(sg.Box(size=SIZE, elements=ELEMENTS))
+        .points[sg.Mesh.of(sg.Box(size=SIZE, elements=ELEMENTS)).cells]
+        .mean(axis=1)
+    )
 
 
 def true_moduli():
@@ -104,7 +106,7 @@ def identify(measured, noise, weight, start):
     return np.exp(found.x), objective.misfit
 
 
-def stiffness_map(rng, weights=(100.0, 30.0, 10.0, 3.0, 1.0)):
+def stiffness_map(rng, weights=(100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0)):
     """(moduli (m,), weight, misfit): of the first weight whose misfit is at most that of noise."""
     measured, noise = measure(rng)
     start = np.full(len(true_moduli()), np.log(np.sqrt(SOFT * STIFF)))
