@@ -29,7 +29,7 @@ class MixedProblem(Problem):
 
     mesh: HexMesh. materials: list of Material, to which the mesh's material numbers refer.
     Attributes, beside those of a Problem: displacement and pressure (dolfinx functions, m and Pa),
-    symmetric (whether tangents are).
+    symmetric (whether tangents are), material_numbers (m,) of the elements of the mesh, or None.
     """
 
     def __init__(self, mesh, materials):
@@ -58,6 +58,7 @@ class MixedProblem(Problem):
         self.impose(mesh, dofs, self.displacement.x.array.size)
         self.loads = Loads(mesh, materials, self.displacement, cell_nodes, QUADRATURE)
         self.symmetric = self.loads.symmetric
+        self.material_numbers = mesh.materials
 
     def start_from(self, coarse):
         """Interpolate displacement and pressure from a problem on the mesh before refine().
@@ -111,9 +112,13 @@ class MixedProblem(Problem):
         """See newton.Problem."""
         return self.loads.augment(self.factor_of)
 
+    def nodal(self, dofs):
+        """Values of the displacement dofs (N,) at the nodes of the HexMesh, (n, 3)."""
+        return dofs.reshape(-1, 3)[self._vertex_block]
+
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh, in its numbering."""
-        return self.displacement.x.array.reshape(-1, 3)[self._vertex_block]
+        return self.nodal(self.displacement.x.array)
 
     def nodal_points(self):
         """Undeformed points (n, 3) in m according to the displacement's space, in the same order.

@@ -20,7 +20,7 @@ def experiment_plate(tips, palette):
         _panel(name, [t for t in tips if t.family == name], palette) for name in families
     )
     drawn = dict.fromkeys(tip.method for tip in tips if _close(tip))
-    legend = (("measured, with the scatter of its repetitions", MUTED, "s"),)
+    legend = (("measured ± scatter", MUTED, "s"),)
     legend += (("golden", style.GOLDEN[0], "_"),) * any(tip.golden is not None for tip in tips)
     legend += tuple((m, palette.colour(m), palette.mark(m)) for m in drawn)
     missing = [m for m in dict.fromkeys(tip.method for tip in tips) if m not in drawn]
