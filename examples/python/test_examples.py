@@ -54,6 +54,35 @@ def test_a_fit_that_does_not_converge_says_so():
         identification.fit(lambda x: (np.exp(-x), np.ones((1, 1))), [1.0], -1.0, 1.0)
 
 
+def test_products_with_second_derivatives():
+    """Of the sinking of the beam's markers by log E: symmetric differences of the sinking itself. Both
+    are exact to a thousandth of it: displacements are nearly 1 / E, so all derivatives are alike.
+    """
+
+    def sinking(logarithms):
+        body = silicone_beam.beam(float(np.exp(logarithms[0])), 0.05, (5, 2, 2))
+        body.tables.append(silicone_beam.sg.Relaxation(tolerance=1e-12))
+        solution = body.solve(name="tl-mean-dilatation")
+        weights = silicone_beam.marker_weights(solution).mean(axis=0)
+        return solution, weights
+
+    def value(logarithms):
+        solution, weights = sinking(logarithms)
+        return weights @ solution.displacement[solution.sets["end"], 2]
+
+    def gradient(logarithms):
+        solution, weights = sinking(logarithms)
+        slope = np.zeros_like(solution.displacement)
+        slope[solution.sets["end"], 2] = weights
+        (material,) = solution.gradient(slope).materials
+        return np.array([material["young_modulus"] * np.exp(logarithms[0])])
+
+    at, h = np.log([276e3]), 0.02
+    (found,) = identification.hessian_product(gradient, at, [1.0], step=0.01)
+    expected = (value(at + h) - 2 * value(at) + value(at - h)) / h**2
+    assert abs(found / expected - 1) < 1e-3
+
+
 def test_the_modulus_of_the_beam_is_recovered():
     """From what the case's own element computes on a coarse mesh, exactly; 2 % of noise on three
     markers give the standard deviation 2 % / sqrt(3), as displacements are nearly 1 / E."""
