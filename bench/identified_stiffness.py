@@ -12,8 +12,6 @@ Exit codes: 0 done, 2 bad usage or input.
 import sys
 from pathlib import Path
 
-import numpy as np
-
 if __name__ == "__main__":
     TREE = Path(__file__).resolve().parent.parent
     sys.path[1:1] = [

@@ -13,14 +13,15 @@ from pathlib import Path
 
 import numpy as np
 
-MESHES = ((10, 3, 3), (20, 6, 6), (40, 12, 12))
-CASE = Path(__file__).resolve().parents[2] / "cases" / "silicone-beam.toml"
-
 if __name__ == "__main__":
-    sys.path.insert(0, str(CASE.parents[1] / "build" / "release" / "python"))
+    root = Path(__file__).resolve().parents[2]
+    sys.path.insert(0, str(root / "build" / "release" / "python"))
 
 import sandglass as sg
 from identification import fit
+
+MESHES = ((10, 3, 3), (20, 6, 6), (40, 12, 12))
+CASE = Path(__file__).resolve().parents[2] / "cases" / "silicone-beam.toml"
 
 
 def loads():
