@@ -14,7 +14,8 @@ from mesh_file import case_with_mesh  # noqa: E402
 from problem import MixedProblem  # noqa: E402
 
 # Found: 5e-9 in the beam and 9e-8 with two materials. Residuals of 1e-12 leave 1e-9 of adjoints,
-# and the sums over the elements of a material cancel up to a hundredfold. Another element is 0.1 off.
+# and the sums over the elements of a material cancel up to a hundredfold. Another element is off
+# by 0.1.
 AGREEMENT = 1e-6
 
 
@@ -23,7 +24,7 @@ def distance(found, expected):
 
 
 def oracle(name, variant=None):
-    """The HexMesh of a case, dJ/du of a scalar J = sum over nodes of w . u, and FEniCSx's Adjoint."""
+    """The HexMesh of a case, dJ/du of a scalar J linear in u, and FEniCSx's Adjoint."""
     case, mesh, _ = case_with_mesh(ROOT / "cases" / f"{name}.toml", variant)
     problem = MixedProblem(mesh, case.materials)
     newton.solve(problem, 10, 1e-12)

@@ -100,7 +100,8 @@ def run(options):
     for name in options.cases:
         if name not in known:
             raise InputError(
-                f"CASE: {name!r} has no stored golden without obstacles and masses; {suggestion(name, known)}"
+                f"CASE: {name!r} has no stored golden without obstacles and masses; "
+                f"{suggestion(name, known)}"
             )
     records = {}
     if STORE.exists():

@@ -55,9 +55,8 @@ def test_a_fit_that_does_not_converge_says_so():
 
 
 def test_products_with_second_derivatives():
-    """Of the sinking of the beam's markers by log E: symmetric differences of the sinking itself. Both
-    are exact to a thousandth of it: displacements are nearly 1 / E, so all derivatives are alike.
-    """
+    """Of the sinking of the beam's markers by log E: differences of the sinking itself. Both are
+    exact to a thousandth: displacements are nearly 1 / E, so that all derivatives are alike."""
 
     def sinking(logarithms):
         body = silicone_beam.beam(float(np.exp(logarithms[0])), 0.05, (5, 2, 2))

@@ -10,9 +10,10 @@ import jinja2
 import markupsafe
 
 from common.files import write_json, write_whole, writing
-from sandglass_report import bending, bodies, findings, headline, interactive, kappa, lines, maps
+from sandglass_report import bending, bodies, experiment, findings, headline, identified
+from sandglass_report import interactive, kappa, lines, maps
 from sandglass_report import measured, paper, plates, provenance, published, replication, speed
-from sandglass_report import experiment, identified, style, tips, viewer
+from sandglass_report import style, tips, viewer
 from sandglass_report.plausible import require_plausible
 from sandglass_report.points import make_points
 from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
@@ -20,7 +21,8 @@ from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
 TEMPLATES = Path(__file__).parent / "templates"
 
 # A claim's name for a section -> the id of the section's heading.
-OWN_NAMES = "paper shapes bending experiment published programs refinement growth maps kappa golden limits runs"
+OWN_NAMES = "paper shapes bending experiment published programs refinement growth maps kappa golden limits"
+    " runs"
 ANCHORS = {"chart": "chart-head"} | {name: name for name in OWN_NAMES.split()}
 
 
