@@ -21,8 +21,10 @@ from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
 TEMPLATES = Path(__file__).parent / "templates"
 
 # A claim's name for a section -> the id of the section's heading.
-OWN_NAMES = "paper shapes bending experiment published programs refinement growth maps kappa golden limits"
-    " runs"
+OWN_NAMES = (
+    "paper shapes bending experiment published programs refinement growth maps kappa golden "
+    "limits runs"
+)
 ANCHORS = {"chart": "chart-head"} | {name: name for name in OWN_NAMES.split()}
 
 
