@@ -1,10 +1,12 @@
 """An experiment beside methods and golden: what is measured, with its scatter, and computed."""
 
+from collections import Counter
+
 from sandglass_report import style
 from sandglass_report.plates import MUTED, TEXT, Panel, Plate
 
 WITHIN = 0.3  # of the measured value: runs that are farther off are not drawn but named
-WORDS = {"end": "displacement", "peak": "first peak", "period": "period"}
+WORDS = {"peak": "first peak", "period": "period"}
 
 
 def experiment_plate(tips, palette):
@@ -53,13 +55,20 @@ def _panel(family, tips, palette):
             mark = {"color": palette.colour(method), "marker": palette.mark(method)}
             for x, y in points:
                 axes.plot(x - 0.4 + number * shift, y, ls="", ms=3.5, mew=0, **mark)
-        names = [
-            f"{tip.variant}\n{WORDS[tip.of]}" if tip.of != "end" else tip.variant for tip in columns
-        ]
-        axes.set_xticks(range(len(columns)), names)
+        axes.set_xticks(range(len(columns)), _names(columns))
         axes.set_ylabel("computed over measured")
 
     golden = {tip.variant: tip.golden / tip.published for tip in columns if tip.golden is not None}
     words = ", ".join(f"{name}: {ratio:.3f}" for name, ratio in golden.items())
     alt = f"{family}: computed over measured. " + (f"Golden: {words}" if words else "")
     return Panel(f"experiment.{family}", family, alt, draw, 560, 340)
+
+
+def _names(columns):
+    """Variant and feature of each column; several displacements of a variant are numbered."""
+    names, count = [], Counter(tip.variant for tip in columns if tip.of == "end")
+    for number, tip in enumerate(columns):
+        before = sum(one.variant == tip.variant for one in columns[: number + 1])
+        numbered = f"{tip.variant}, {before}" if count[tip.variant] > 1 else tip.variant
+        names.append(numbered if tip.of == "end" else f"{tip.variant}\n{WORDS[tip.of]}")
+    return names
