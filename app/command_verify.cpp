@@ -56,9 +56,11 @@ struct Task {
 std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
   std::deque<Subject> subjects;  // a deque, because tasks point into it
   const auto comparable = [](const Case& description) {
-    return description.quasi_static || std::filesystem::exists(read_comparison(description).golden);
+    if (description.quasi_static) return true;
+    const Comparison comparison = read_comparison(description);
+    return std::filesystem::exists(comparison.golden) || !comparison.published.empty();
   };
-  for (auto& scene : read_scenes(names, comparable, "golden to be compared with")) {
+  for (auto& scene : read_scenes(names, comparable, "golden or published value to be compared with")) {
     References references = read_references(scene);
     subjects.push_back({std::move(scene), std::move(references)});
   }

@@ -69,6 +69,22 @@ class Pressure:
 
 
 @dataclass(frozen=True)
+class Gravity:
+    """An acceleration (3,) in m/s^2 of all masses. curve: as of a Force."""
+
+    value: tuple
+    curve: Callable | None = None
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A mass (kg) attached to a node set, in equal shares."""
+
+    set_name: str
+    total: float
+
+
+@dataclass(frozen=True)
 class Support:
     """Springs on faces within a node set: stiffness in Pa/m, in all or only normal directions."""
 
@@ -129,8 +145,8 @@ class Motion:
 class Case:
     """A case: name, materials in the order of the file, imposed motions and loads.
 
-    gravity: (3,) m/s^2. motion: a Motion, or None for a quasi-static case. obstacles: tuple of
-    Obstacle, which nothing penetrates.
+    motion: a Motion, or None for a quasi-static case. obstacles: tuple of Obstacle, which nothing
+    penetrates.
     """
 
     name: str
@@ -140,7 +156,8 @@ class Case:
     rotations: tuple = ()
     pressures: tuple = ()
     supports: tuple = ()
-    gravity: tuple = (0.0, 0.0, 0.0)
+    gravity: tuple = ()
+    masses: tuple = ()
     motion: Motion | None = None
     obstacles: tuple = ()
 
@@ -203,7 +220,8 @@ def read_case(path, name=None):
         rotations=rotations,
         pressures=read_all("pressure", _pressure, moving),
         supports=supports,
-        gravity=tuple(map(sum, zip((0.0, 0.0, 0.0), *read_all("gravity", _gravity)))),
+        gravity=read_all("gravity", _gravity, moving),
+        masses=read_all("mass", _mass),
         motion=_motion(path, tables, read_all("velocity", _velocity)) if moving else None,
         obstacles=obstacles,
     )
@@ -211,12 +229,9 @@ def read_case(path, name=None):
 
 def _motion(path, tables, velocities):
     """The Motion of a dynamic case. Raises InputError for features without a golden of motion."""
-    for key, names in (("gravity", CURVE), ("support", ("damping",))):
-        for where, table in entries(path, tables, key) if key in tables else ():
-            if set(names) & set(table):
-                raise InputError(
-                    f"{where}: {' and '.join(names)}: not supported by goldens of motion"
-                )
+    for where, table in entries(path, tables, "support") if "support" in tables else ():
+        if "damping" in table:
+            raise InputError(f"{where}: damping: not supported by goldens of motion")
     table = entry(path, tables, "dynamics", dict)
     keys = {"duration": float, "ramp_time": 0.0, "damping": 0.0, "frames": 20}
     found = _read(f"{path}: dynamics", table, *table, **keys)
@@ -320,10 +335,16 @@ def _pressure(where, table, moving):
     return Pressure(found["set"], factor * found["value"], curve)
 
 
-def _gravity(where, table):
-    """The acceleration of a [[gravity]] table."""
-    factor, _ = factor_and_curve(where, table, moving=False)
-    return tuple(factor * v for v in _read(where, table, *CURVE, value=tuple)["value"])
+def _gravity(where, table, moving):
+    """A [[gravity]] table as a Gravity."""
+    factor, curve = factor_and_curve(where, table, moving)
+    value = _read(where, table, *CURVE, value=tuple)["value"]
+    return Gravity(tuple(factor * v for v in value), curve)
+
+
+def _mass(where, table):
+    """A [[mass]] table as a PointMass."""
+    return PointMass(*_read(where, table, set=str, total=float).values())
 
 
 def _support(where, table):

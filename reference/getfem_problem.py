@@ -81,8 +81,8 @@ class GetfemProblem(Problem):
             values = "".join(f"Def {k} := {v!r}; " for k, v in material.parameters.items())
             where = np.stack([cells, np.full_like(cells, -1)])
             self._add(values + FORM.format(slope=slope, bulk=bulk).replace("\n", " "), where)
-            if any(self._mesh.gravity):
-                weight = material.density * np.array(self._mesh.gravity)
+            if self._mesh.gravity:
+                weight = material.density * self._mesh.acceleration()
                 self._add(f"-load * {_text(weight)} . Test_u", where)
 
     def _add_loads(self):

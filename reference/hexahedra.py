@@ -95,15 +95,24 @@ class Touching:
 
 
 @dataclass(frozen=True)
+class Attached:
+    """A mass (kg) attached in equal shares to nodes (n,) bool."""
+
+    nodes: np.ndarray
+    total: float
+
+
+@dataclass(frozen=True)
 class HexMesh:
     """Trilinear hexahedra, the displacements imposed on their nodes, the tractions on faces.
 
     points: (n, 3) undeformed coordinates, m. cells: (m, 8) node numbers in VTK order.
     conditions: tuple of Condition. tractions: tuple of Traction. materials: (m,) the number of
     each element's material, or None if there is only one. surfaces: tuple of Surface. gravity:
-    (3,) m/s^2 at full load. axes: (m, 3, 3) material axes of each element by rows, or None. ties:
+    tuple of Gravity. axes: (m, 3, 3) material axes of each element by rows, or None. ties:
     (tied, of, weights) of k pairs of a tied node and one whose displacement it follows with that
-    weight, or None. touching: tuple of Touching.
+    weight, or None. touching: tuple of Touching. masses: tuple of
+    Attached.
     """
 
     points: np.ndarray
@@ -112,10 +121,11 @@ class HexMesh:
     tractions: tuple = ()
     materials: np.ndarray | None = None
     surfaces: tuple = ()
-    gravity: tuple = (0.0, 0.0, 0.0)
+    gravity: tuple = ()
     axes: np.ndarray | None = None
     ties: tuple | None = None
     touching: tuple = ()
+    masses: tuple = ()
 
     def imposed(self, load=1.0):
         """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, else zero)."""
@@ -126,6 +136,10 @@ class HexMesh:
                 prescribed[condition.nodes, axis] = True
                 values[condition.nodes, axis] = condition.at(load)[condition.nodes, axis]
         return prescribed, values
+
+    def acceleration(self):
+        """The sum (3,) of all gravity at full load, m/s^2."""
+        return np.sum([np.zeros(3), *(one.value for one in self.gravity)], axis=0)
 
     def largest_turn(self):
         """Largest displacement due to rotations alone, along the path: (n,) m."""
@@ -255,6 +269,7 @@ def refine(mesh):
         tractions=with_sets(mesh.tractions),
         surfaces=with_sets(mesh.surfaces),
         touching=with_sets(mesh.touching),
+        masses=with_sets(mesh.masses),
         materials=materials,
         axes=axes,
         ties=None,

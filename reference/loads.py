@@ -35,8 +35,9 @@ class Loads:
 
     mesh: HexMesh. materials: list of Material. displacement: dolfinx function, m. cell_nodes: (m,
     8 or 10) node numbers in the space's order of cells and nodes. degree: of the quadrature.
-    Attributes: densities (m,) of the cells in the order of the space, kg/m^3; contacts, a Contact
-    for each obstacle; symmetric (whether the tangent is).
+    Attributes: densities (m,) of the cells in the order of the space, kg/m^3; attached (N,) masses
+    of the dofs, kg, beside those of cells; contacts, a Contact for each obstacle; symmetric
+    (whether the tangent is).
     """
 
     def __init__(self, mesh, materials, displacement, cell_nodes, degree):
@@ -47,8 +48,11 @@ class Loads:
         for traction in mesh.tractions:
             measure = _measure(domain, traction.nodes, cell_nodes, degree)
             self._dead.append((_traction_forces(traction, test, measure), traction.curve))
-        if any(mesh.gravity):
-            self._dead.append((_weight(mesh.gravity, self.densities, space, test, degree), None))
+        self.attached = _attached(mesh, space, cell_nodes)
+        for one in mesh.gravity:
+            weight = _weight(one.value, self.densities, space, test, degree)
+            weight += self.attached * np.tile(one.value, len(weight) // 3)
+            self._dead.append((weight, one.curve))
         self._factors = []  # (constant, curve) of each pressure
         F = ufl.Identity(3) + ufl.grad(displacement)
         normal = ufl.FacetNormal(domain)
@@ -178,6 +182,16 @@ def _traction_forces(traction, test, measure):
     )
     t = mean + ufl.cross(turn, ufl.SpatialCoordinate(domain) - centre)
     return fem.assemble_vector(fem.form(ufl.inner(t, test) * measure)).array.copy()
+
+
+def _attached(mesh, space, cell_nodes):
+    """The masses (N,) of the displacement dofs, kg, that are attached to the nodes of a HexMesh."""
+    blocks = np.zeros(cell_nodes.max() + 1, dtype=int)
+    blocks[cell_nodes] = space.dofmap.list.array.reshape(cell_nodes.shape)
+    of_blocks = np.zeros(space.dofmap.index_map.size_local)
+    for one in mesh.masses:
+        of_blocks[blocks[np.flatnonzero(one.nodes)]] += one.total / one.nodes.sum()
+    return np.repeat(of_blocks, 3)
 
 
 def _weight(gravity, densities, space, test, degree):

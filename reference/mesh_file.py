@@ -13,7 +13,7 @@ from common.errors import InputError, suggestion
 from common.program import ROOT, binary, output_of
 from common.result_file import text_of
 from common.hexahedron import boundary_faces
-from hexahedra import Condition, HexMesh, Surface, Touching, traction, turn_about
+from hexahedra import Attached, Condition, HexMesh, Surface, Touching, traction, turn_about
 
 
 TIES = ("node", "of", "weight")  # datasets of hanging nodes
@@ -145,11 +145,15 @@ def load_case_mesh(case, mesh_path):
     touching = tuple(
         Touching(_loaded(mesh_path, file, "obstacle", one.set_name), one) for one in case.obstacles
     )
-    pushed = tractions or case.pressures or touching or any(case.gravity)
+    pushed = tractions or case.pressures or touching or case.gravity
     if not (mesh.largest_imposed() or pushed or case.motion and case.motion.velocities):
         raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
     loads = {"tractions": tuple(tractions), "surfaces": surfaces, "gravity": case.gravity}
-    return dataclasses.replace(mesh, **loads, touching=touching), file
+    masses = tuple(
+        Attached(_mask(file, _members(mesh_path, file, "mass", one.set_name)), one.total)
+        for one in case.masses
+    )
+    return dataclasses.replace(mesh, **loads, touching=touching, masses=masses), file
 
 
 def initial_velocity(case, mesh_path):

@@ -29,7 +29,7 @@ class MixedProblem(Problem):
 
     mesh: HexMesh. materials: list of Material, to which the mesh's material numbers refer.
     Attributes, beside those of a Problem: displacement and pressure (dolfinx functions, m and Pa),
-    symmetric (whether tangents are).
+    symmetric (whether tangents are), material_numbers (m,) of the elements of the mesh, or None.
     """
 
     def __init__(self, mesh, materials):
@@ -58,6 +58,7 @@ class MixedProblem(Problem):
         self.impose(mesh, dofs, self.displacement.x.array.size)
         self.loads = Loads(mesh, materials, self.displacement, cell_nodes, QUADRATURE)
         self.symmetric = self.loads.symmetric
+        self.material_numbers = mesh.materials
 
     def start_from(self, coarse):
         """Interpolate displacement and pressure from a problem on the mesh before refine().
@@ -86,7 +87,8 @@ class MixedProblem(Problem):
 
     def lumped_masses(self):
         """Masses (N,) of the displacement dofs, kg: each cell gives an eighth of its own to each
-        vertex, as solver/problem/masses.cpp does. For elements whose only nodes are vertices."""
+        vertex, as solver/problem/masses.cpp does, beside what is attached to the vertices. For
+        elements whose only nodes are vertices."""
         space = self.displacement.function_space
         test = ufl.TestFunction(fem.FunctionSpace(space.mesh, ("DG", 0)))
         measure = ufl.dx(metadata={"quadrature_degree": QUADRATURE})
@@ -94,7 +96,7 @@ class MixedProblem(Problem):
         masses = np.zeros(len(self._vertex_block))
         of_cells = (self.loads.densities * volumes / 8)[:, None]
         np.add.at(masses, space.dofmap.list.array.reshape(len(volumes), 8), of_cells)
-        return np.repeat(masses, 3)
+        return np.repeat(masses, 3) + self.loads.attached
 
     def dofs_of(self, nodal):
         """Values (n, 3) at the nodes of the HexMesh as values of the displacement dofs (N,)."""
@@ -110,9 +112,13 @@ class MixedProblem(Problem):
         """See newton.Problem."""
         return self.loads.augment(self.factor_of)
 
+    def nodal(self, dofs):
+        """Values of the displacement dofs (N,) at the nodes of the HexMesh, (n, 3)."""
+        return dofs.reshape(-1, 3)[self._vertex_block]
+
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh, in its numbering."""
-        return self.displacement.x.array.reshape(-1, 3)[self._vertex_block]
+        return self.nodal(self.displacement.x.array)
 
     def nodal_points(self):
         """Undeformed points (n, 3) in m according to the displacement's space, in the same order.

@@ -32,9 +32,10 @@ PACKAGES = "python3-sfepy and python3-getfem (ci/setup test)"
 
 
 def compared():
-    """The cases whose stored goldens are compared: those without obstacles."""
+    """The cases whose stored goldens are compared: those without obstacles and attached masses."""
     cases = ((name, find_case(CASES, name)) for name in stored("golden"))
-    return [name for name, path in cases if not read_case(path, name).obstacles]
+    cases = [(name, read_case(path, name)) for name, path in cases]
+    return [name for name, case in cases if not (case.obstacles or case.masses)]
 
 
 def distance(name, change=None):
@@ -99,7 +100,8 @@ def run(options):
     for name in options.cases:
         if name not in known:
             raise InputError(
-                f"CASE: {name!r} has no stored golden without obstacles; {suggestion(name, known)}"
+                f"CASE: {name!r} has no stored golden without obstacles and masses; "
+                f"{suggestion(name, known)}"
             )
     records = {}
     if STORE.exists():

@@ -99,11 +99,11 @@ class SfepyProblem(Problem):
                 "compliance", of_material(lambda m: 1 / bulk(m)), scaled=False
             ),
             "weight": self._material(
-                "weight", of_material(lambda m: m.density * np.array(mesh.gravity))
+                "weight", of_material(lambda m: m.density * mesh.acceleration())
             ),
         }
         balance = term("dw_tl_he_neohook(shear.val, v, u)") + term("dw_tl_bulk_pressure(v, u, p)")
-        if any(mesh.gravity):
+        if mesh.gravity:
             balance = balance - term("dw_volume_lvf(weight.val, v)")
         # The integrals of q J, q and q p / K.
         dilatation = term("dw_tl_volume(q, u)") - term("dw_integrate(q)")

@@ -82,7 +82,7 @@ def _half(mesh, axis):
                 return None
     if not all(_has_mirror(t, mesh, axis, side, image) for t in mesh.tractions):
         return None
-    if mesh.surfaces or mesh.touching or any(mesh.gravity) or mesh.axes is not None:
+    if mesh.surfaces or mesh.touching or mesh.gravity or mesh.masses or mesh.axes is not None:
         return None  # their conditions on a mirror plane are not implemented
     if mesh.materials is not None and not _same_materials(mesh, image):
         return None

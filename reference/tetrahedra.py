@@ -83,6 +83,7 @@ def cut(mesh):
         tractions=tuple(map(with_set, mesh.tractions)),
         surfaces=tuple(map(with_set, mesh.surfaces)),
         touching=tuple(map(with_set, mesh.touching)),
+        masses=tuple(map(with_set, mesh.masses)),
         materials=None if mesh.materials is None else mesh.materials[cell],
         axes=None if mesh.axes is None else mesh.axes[cell],
         ties=None,

@@ -15,6 +15,7 @@ if __name__ == "__main__":
 
 from common.command import command_line, option
 from sandglass_report.evidence import read_evidence
+from sandglass_report.identified import read_identified
 from sandglass_report.growth import growth_plate, read_growth
 from sandglass_report.verdicts import read_verdicts
 from sandglass_report.measured import read_measured
@@ -49,6 +50,7 @@ def make(options):
         pictures,
         growth=growth,
         refinement=refinement_plate(read_refinement(refined)) if refined.exists() else None,
+        identified=read_identified(options.identified) if options.identified.exists() else (),
         second=second,
         submissions=tuple(read_submissions(options.submissions)),
     )
@@ -71,6 +73,10 @@ INPUTS = {
     "pictures": ("reports/figures", "folder of drawn failure maps"),
     "growth": ("reports/figures/growth.json", "of bench/growth.py"),
     "refinement": ("reports/figures/refinement.json", "of bench/refinement.py"),
+    "identified": (
+        "reports/figures/identified_stiffness.json",
+        "of bench/identified_stiffness.py",
+    ),
     "submissions": ("results", "folder of submitted results"),
     "claims": ("verification/claims.toml", "claims and their tests"),
     "mutants": ("verification/mutants/RESULTS.md", "of verification/mutants/run.py"),

@@ -146,6 +146,7 @@ TEST_F(MethodTableTest, keeps_every_set_that_a_table_names_on_coarser_meshes) {
     const std::string name(Force::name);
     tables[name] = "[[" + name + "]]\nset = \"lone\"\nvalue = 1.0\n";
   });
+  tables["mass"] = "[[mass]]\nset = \"lone\"\ntotal = 1.0\n";
   tables["force"] = "[[force]]\nset = \"lone\"\ntotal = [0.1, 0.0, 0.0]\n";
   tables["support"] = "[[support]]\nset = \"lone\"\nstiffness = 1e3\n";
   tables["obstacle"] =

@@ -47,7 +47,7 @@ struct Touched {
   Mesh mesh = box({0.2, 0.2, 0.2}, {1, 1, 1});
   std::vector<Quadrilateral> boundary = boundary_faces(mesh.cells);
   NodeSets sets{{"all", {0, 1, 2, 3, 4, 5, 6, 7}}};
-  std::vector<double> element_masses{1.0}, masses = std::vector<double>(8, 0.125);
+  std::vector<double> masses = std::vector<double>(8, 0.125);
   std::vector<int> places = std::vector<int>(8);
   std::vector<double> factors;
   std::shared_ptr<const BodyForce> force;
@@ -59,7 +59,7 @@ struct Touched {
       for (std::size_t i = 0; i < 3; ++i) X[i] += away[i] - 0.1;
     }
     std::iota(places.begin(), places.end(), 0);
-    ForceResolver resolver{"a.toml", mesh.points, boundary, sets, element_masses, masses};
+    ForceResolver resolver{"a.toml", mesh.points, boundary, sets, masses};
     resolver.cells = mesh.cells;
     resolver.young_moduli = {1000.0};
     obstacle.resolve(resolver);

@@ -24,10 +24,10 @@ struct Surface {
   Mesh mesh = BoxMesh{{2.0, 3.0, 1.0}, {2, 1, 1}}.build();
   std::vector<Quadrilateral> boundary = boundary_faces(mesh.cells);
   NodeSets sets;
-  std::vector<double> element_masses{5.0, 7.0}, masses = std::vector<double>(12);
+  std::vector<double> masses = std::vector<double>(12);
   std::vector<double> shares = std::vector<double>(12);  // of the surface's area, integrals of N_I, m^2
   std::vector<double> edges = std::vector<double>(12);   // sums of the longer edges of faces, m
-  ForceResolver resolver{"a.toml", mesh.points, boundary, sets, element_masses, masses};
+  ForceResolver resolver{"a.toml", mesh.points, boundary, sets, masses};
 
   Surface() {
     std::iota(masses.begin(), masses.end(), 1.0);
@@ -215,7 +215,7 @@ TEST(Force, dead_loads_are_added_up) {
     expect_force(added.forces[n], sum, n);
     EXPECT_EQ(added.rates[n].square, 0.0);
   }
-  EXPECT_NEAR(added.size, 5.0 + 13.0 / 10.0 + 1.0 * (5.0 + 7.0), 1e-12);
+  EXPECT_NEAR(added.size, 5.0 + 13.0 / 10.0 + 1.0 * 78.0, 1e-12);
   EXPECT_TRUE(forces[0]->traits().drives);
 }
 
@@ -243,7 +243,7 @@ TEST(Force, acts_on_a_part_as_on_its_faces_alone) {
     if (part.part_of[at(node)] >= 0) alone["surface"].push_back(part.part_of[at(node)]);
   }
   const auto boundary = boundary_faces(part.mesh.cells);
-  ForceResolver there{"a.toml", part.mesh.points, boundary, alone, surface.element_masses, masses};
+  ForceResolver there{"a.toml", part.mesh.points, boundary, alone, masses};
   const auto compare = [&](const auto& kind) {
     const auto restricted = surface.made(kind)->restricted_to(part);
     kind.resolve(there);

@@ -381,13 +381,9 @@ TEST(Subcycling, refuses_what_depends_on_more_than_displacements) {
   std::vector<int> all(scene.mesh.points.size());
   std::iota(all.begin(), all.end(), 0);
   const NodeSets sets{{"all", all}};
-  const std::vector<double> masses(all.size(), 1.0);
-  ForceResolver resolver{.file = "",
-                         .points = scene.mesh.points,
-                         .boundary = scene.boundary,
-                         .sets = sets,
-                         .element_masses = masses,
-                         .masses = masses};
+  std::vector<double> masses(all.size(), 1.0);
+  ForceResolver resolver{
+      .file = "", .points = scene.mesh.points, .boundary = scene.boundary, .sets = sets, .masses = masses};
   Pressure{"all", 1.0}.resolve(resolver);
   scene.forces = resolver.all();
   EXPECT_NE(refusal(scene, "tl-perturbation").find("pressure acts on node"), std::string::npos);

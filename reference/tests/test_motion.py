@@ -142,7 +142,8 @@ def test_golden_has_its_times_and_figures(plain):
 
 def test_solver_converges_to_the_golden_with_the_square_of_its_step(small, plain):
     errors = []
-    for step in ("1e-3", "5e-4", "2.5e-4"):  # whole parts of the frames
+    # Whole parts of the frames, with errors from 1e-3 to 1e-4, far above the golden's own.
+    for step in ("4e-3", "2e-3", "1e-3"):
         code, error, text = _verify(small(("TIME_STEP", step), golden_of=plain))
         assert code == 0, text
         errors.append(error)
@@ -171,7 +172,15 @@ def test_a_motion_that_is_a_step_late_breaks_the_limit(small, plain):
     assert _verify(folder)[0] == 1
 
 
-@pytest.mark.parametrize("change", [("density = 1000.0", "density = 1100.0"), ("= 5.0", "= 6.0")])
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("density = 1000.0", "density = 1100.0"),
+        ("= 5.0", "= 6.0"),
+        ("total = 0.004", "total = 0.005"),
+        ("factors = [0.0, 1.0]", "factors = [0.0, 0.9]"),
+    ],
+)
 def test_golden_of_another_motion(small, plain, change):
     """It is refused because of its hash; with a forged hash it breaks the limit."""
     folder = small(change, golden_of=plain)

@@ -10,7 +10,8 @@ import jinja2
 import markupsafe
 
 from common.files import write_json, write_whole, writing
-from sandglass_report import bending, bodies, findings, headline, interactive, kappa, lines, maps
+from sandglass_report import bending, bodies, experiment, findings, headline, identified
+from sandglass_report import interactive, kappa, lines, maps
 from sandglass_report import measured, paper, plates, provenance, published, replication, speed
 from sandglass_report import style, tips, viewer
 from sandglass_report.plausible import require_plausible
@@ -21,7 +22,8 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 # A claim's name for a section -> the id of the section's heading.
 OWN_NAMES = (
-    "paper shapes bending published programs refinement growth maps kappa golden limits runs"
+    "paper shapes bending experiment published programs refinement growth maps kappa golden "
+    "limits runs"
 )
 ANCHORS = {"chart": "chart-head"} | {name: name for name in OWN_NAMES.split()}
 
@@ -38,6 +40,7 @@ class Inputs:
     pictures: tuple = ()  # paths of failure maps as PNG, for maps that were not recomputed
     growth: plates.Plate | None = None
     refinement: plates.Plate | None = None
+    identified: tuple = ()  # records of identified stiffnesses
     second: dict = field(default_factory=dict)  # kind -> SecondProgram
     submissions: tuple = ()
 
@@ -98,6 +101,9 @@ def write_report(inputs, page):
             published=others,
             growth=inputs.growth,
             refinement=inputs.refinement,
+            experiment=experiment.experiment_plate(inputs.verdicts.tips, palette),
+            identified=inputs.identified
+            and identified.identified_plate(inputs.identified, palette),
             second=inputs.second,
             submissions=inputs.submissions,
             evidence=inputs.evidence,

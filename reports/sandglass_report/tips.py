@@ -22,9 +22,10 @@ class TipTable:
 def tip_tables(tips):
     """The tables of all families, in the order of the file; relative to the truth if available.
 
-    Families with known values of other programs have their own tables (published.py).
+    Families with known values of other programs have their own tables (published.py), and measured
+    values their own plate (experiment.py).
     """
-    tips = [tip for tip in tips if not tip.programs]
+    tips = [tip for tip in tips if not tip.programs and tip.scatter is None]
     tables = []
     for family in dict.fromkeys(tip.family for tip in tips):
         own = [tip for tip in tips if tip.family == family]

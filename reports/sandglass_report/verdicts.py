@@ -88,6 +88,9 @@ class Tip:
     published: float
     computed: float | None
     programs: tuple
+    scatter: float | None  # of a measured value; None for other published values
+    of: str  # "end" or, of a motion, "peak" or "period"
+    golden: float | None
     seconds: float | None  # to equilibrium or, of a case in motion, of the motion
     to_published: float | None = key("ratio")
     to_truth: float | None = key("ratio_to_truth")
@@ -172,7 +175,7 @@ def _seconds(where, record):
 def _limit(where, record):
     """A limit of the verdicts. Raises InputError."""
     limit = as_dataclass(Limit, where, record)
-    if limit.reference not in (*REFERENCES, "published"):
-        allowed = "golden, truth or published"
+    if limit.reference not in (*REFERENCES, "published", "measured"):
+        allowed = "golden, truth, published or measured"
         raise InputError(f"{where}.reference = {limit.reference!r} must be {allowed}")
     return limit

@@ -93,6 +93,7 @@ class DataSet:
         """A record of a run with a published value, -2, perhaps with values of other programs."""
         value = {"source": "a book", "ratio": ratio, "ratio_to_truth": to_truth, "published": -2.0}
         value |= {"set": "tip", "component": "z", "programs": list(programs)}
+        value |= {"scatter": None, "of": "end", "golden": None}
         value["computed"] = None if ratio is None else -2.0 * ratio
         record = {"method": method, "kappa": None, "kappa_is_auto": False, "status": status}
         record |= {"equilibrium_seconds": 0.5, "motion_seconds": None}

@@ -14,13 +14,13 @@ struct ForceResolver {
   const NodalField& points;
   const std::vector<Quadrilateral>& boundary;
   const NodeSets& sets;
-  const std::vector<double>& element_masses;  ///< kg
-  const std::vector<double>& masses;          ///< of nodes, kg
+  std::vector<double>& masses;  ///< of nodes, kg
 
   std::vector<LoadCurve> curves = {LoadCurve{}};            ///< the first is the case's
   BodyForces forces = {};                                   ///< except dead loads
   std::map<std::pair<std::size_t, int>, Vector> dead = {};  ///< by curve and node, N
   std::vector<LoadSize> sizes_of_dead = {};
+  std::vector<double> attached = {};  ///< share of `masses` that is not of elements; empty if there is none
   std::span<const Hexahedron> cells = {};
   std::vector<double> young_moduli = {};  ///< of elements, of the undeformed material, Pa
 

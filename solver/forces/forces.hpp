@@ -7,18 +7,19 @@
 #include "forces/dead_force.hpp"
 #include "forces/gravity.hpp"
 #include "forces/obstacle.hpp"
+#include "forces/point_mass.hpp"
 #include "forces/pressure.hpp"
 #include "forces/support.hpp"
 
 namespace sandglass {
 
-/// The list of kinds of forces, in the order in which they are summed. A new one is a header, its source and
-/// one entry here. Each holds the plain data of a table [[name]] of a case file, and has: name, summary, and
-/// parameters(), whose texts name node sets; only_in_motion, the parameter that has no effect in static
-/// cases, if any; by_mass, whether it depends on the density; and resolve(resolver), which adds its BodyForce
-/// on a mesh. The optional `one_of` names parameters of which at least one must be given. All loads are
-/// proportional to the factor of their curve.
-using Forces = TypeList<DeadForce, Pressure, Gravity, Support, Obstacle>;
+/// The list of kinds of forces, in the order in which they are resolved and summed: masses first, because
+/// weight reads them. A new one is a header, its source and one entry here. Each holds the plain data of a
+/// table [[name]] of a case file, and has: name, summary, and parameters(), whose texts name node sets;
+/// only_in_motion, the parameter that has no effect in static cases, if any; by_mass, whether it depends on
+/// the density; and resolve(resolver), which adds its BodyForce on a mesh. The optional `one_of` names
+/// parameters of which at least one must be given. All loads are proportional to the factor of their curve.
+using Forces = TypeList<PointMass, DeadForce, Pressure, Gravity, Support, Obstacle>;
 
 /// The forces of a case: its tables of each kind, in their order.
 template <class List>

@@ -4,7 +4,7 @@
 
 namespace sandglass {
 
-/// The weight of the body.
+/// The weight of the body and of what is attached to it.
 struct Gravity {
   static constexpr std::string_view name = "gravity";
   static constexpr std::string_view summary = "the weight of the body";

@@ -10,7 +10,7 @@
 namespace sandglass {
 
 /// The tables of a case file about the comparison of answers, which only comparing programs read.
-inline constexpr std::array tables_not_read{"comparison", "expect", "profile", "published"};
+inline constexpr std::array tables_not_read{"comparison", "expect", "measured", "profile", "published"};
 
 /// Reads a case file, strictly: unknown keys, missing keys, wrong types and values out of range are
 /// InputErrors that name file, line, key, value and rule. `law`, `generator` and method names come from their

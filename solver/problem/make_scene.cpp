@@ -144,20 +144,20 @@ std::vector<double> young_moduli(const Mesh& mesh, const Materials& materials) {
   return of_elements;
 }
 
-/// Resolves the forces of the case and keeps their curves in the scene.
-void make_forces(const Case& description, Scene& scene, const std::vector<double>& element_masses,
-                 const std::vector<double>& masses) {
+/// Resolves the forces of the case, keeps their curves in the scene, and adds to the `masses` (kg) of nodes
+/// what is attached to them.
+void make_forces(const Case& description, Scene& scene, std::vector<double>& masses) {
   ForceResolver resolver{.file = scene.settings.file.string(),
                          .points = scene.mesh.points,
                          .boundary = scene.boundary,
                          .sets = scene.sets,
-                         .element_masses = element_masses,
                          .masses = masses,
                          .cells = scene.mesh.cells,
                          .young_moduli = young_moduli(scene.mesh, scene.materials)};
   description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
   scene.forces = resolver.all();
   scene.curves = std::move(resolver.curves);
+  scene.attached_masses = std::move(resolver.attached);
 }
 
 /// The sum of all initial velocities at each node, from their masses (kg); empty if the case has none.
@@ -217,9 +217,8 @@ Scene make_scene(const Case& description, Mesh mesh, NodeSets sets_of_file,
   refine(description, scene);
   make_constraints(description, scene);
   tie(description, scene);
-  const auto of_elements = element_masses(scene.mesh, scene.materials);
-  const auto masses = lumped_masses(scene.mesh, of_elements);
-  make_forces(description, scene, of_elements, masses);
+  auto masses = lumped_masses(scene.mesh, element_masses(scene.mesh, scene.materials));
+  make_forces(description, scene, masses);
   scene.initial_velocities = make_initial_velocities(description, scene, masses);
   scene.mesh_hash = mesh_hash(scene.mesh, scene.sets, scene.materials.of_element);
   return scene;

@@ -14,8 +14,10 @@ std::vector<double> element_masses(const Mesh& mesh, const Materials& materials)
   return masses;
 }
 
-std::vector<double> lumped_masses(const Mesh& mesh, const std::vector<double>& element_masses) {
-  std::vector<double> masses(mesh.points.size(), 0.0);
+std::vector<double> lumped_masses(const Mesh& mesh, const std::vector<double>& element_masses,
+                                  std::vector<double> attached) {
+  std::vector<double> masses = std::move(attached);
+  masses.resize(mesh.points.size());
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
     for (const int node : mesh.cells[e]) masses[at(node)] += share_of_node(element_masses[e]);
   }

@@ -12,7 +12,7 @@ namespace {
 /// The largest value at the nodes of each element.
 std::vector<LoadRates> load_rates_of(const Scene& scene, const std::vector<double>& element_masses) {
   if (first_not_dead(scene.forces) == nullptr) return {};
-  const std::vector<double> masses = lumped_masses(scene.mesh, element_masses);
+  const std::vector<double> masses = lumped_masses(scene.mesh, element_masses, scene.attached_masses);
   const double end = scene.settings.quasi_static ? 1.0 : scene.settings.dynamics.duration;
   std::vector<double> largest;
   for (const LoadCurve& curve : scene.curves) largest.push_back(curve.largest(end));
@@ -36,7 +36,7 @@ Model::Model(const Scene& scene, MethodChoice choice)
       choice_(std::move(choice)),
       internal_force_(make_internal_force(scene.mesh, scene.materials, choice_)),
       element_masses_(sandglass::element_masses(scene.mesh, scene.materials)),
-      masses_(handed_on(scene.ties, lumped_masses(scene.mesh, element_masses_))),
+      masses_(handed_on(scene.ties, lumped_masses(scene.mesh, element_masses_, scene.attached_masses))),
       load_rates_(load_rates_of(scene, element_masses_)) {}
 
 NodalField internal_forces(const Model& model, const NodalField& u) {

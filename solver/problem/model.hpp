@@ -16,7 +16,8 @@ class Model {
   const MethodChoice& choice() const { return choice_; }
   const AnyInternalForce& internal_force() const { return internal_force_; }
 
-  /// Lumped masses of the nodes, kg; the mass of a tied node is added to the nodes that it follows.
+  /// Lumped masses of the nodes, with what is attached to them, kg; the mass of a tied node is added to the
+  /// nodes that it follows.
   const std::vector<double>& masses() const { return masses_; }
 
   /// Mass of each element, kg.

@@ -66,7 +66,7 @@ Scene on_part(const Scene& whole, const MeshPart& part) {
   Scene scene = whole;
   // A new field does not compile until it is named here; fields of the mesh are cut to the part.
   auto& [settings, case_hash, mesh_hash, mesh, ties, coarser, boundary, sets, element_sets, materials,
-         constraints, driven, angles, curves, forces, initial_velocities] = scene;
+         constraints, driven, angles, curves, forces, attached_masses, initial_velocities] = scene;
   std::vector<int> element_there(mesh.cells.size(), -1);
   for (std::size_t e = 0; e < part.element_of.size(); ++e)
     element_there[at(part.element_of[e])] = static_cast<int>(e);
@@ -85,6 +85,10 @@ Scene on_part(const Scene& whole, const MeshPart& part) {
   std::erase_if(driven, [](const DrivenSet& set) { return set.constraints.empty(); });
   for (auto& force : forces) force = force->restricted_to(part);
   std::erase(forces, nullptr);
+  if (!attached_masses.empty()) {
+    attached_masses.clear();
+    for (const int node : part.node_of) attached_masses.push_back(whole.attached_masses[at(node)]);
+  }
   if (!initial_velocities.empty()) initial_velocities = values_at(part.node_of, whole.initial_velocities);
   return scene;
 }

@@ -48,7 +48,8 @@ struct Scene {
   std::vector<double> angles;           ///< rad, of paths; the first is zero, for straight paths
   std::vector<LoadCurve> curves;        ///< of forces; the first is the case's
   BodyForces forces;
-  NodalField initial_velocities;  ///< m/s; empty: at rest. Imposed components ignore them
+  std::vector<double> attached_masses;  ///< of nodes, kg, beside those of elements; empty: none
+  NodalField initial_velocities;        ///< m/s; empty: at rest. Imposed components ignore them
 };
 
 /// The scene on a part of its mesh, fixed at the rim. The mesh must not have ties.

@@ -111,6 +111,7 @@ void forget_answers(toml::table& root, const Case& description) {
   set_text(table_of(root, "case"), "name", description.name + "-chosen");
   root.erase("expect");
   root.erase("published");
+  root.erase("measured");
   root.erase("comparison");
   root.erase("profile");
 }

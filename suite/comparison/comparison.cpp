@@ -1,6 +1,12 @@
 #include "comparison/comparison.hpp"
 
+#include <fmt/ranges.h>
+
+#include <map>
+
 #include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "comparison/published.hpp"
 #include "io/case_file.hpp"
 #include "io/case_variants.hpp"
 #include "io/table_reader.hpp"
@@ -32,7 +38,7 @@ ProgramValues read_program(TableReader table) {
   return found;
 }
 
-PublishedValue read_published(TableReader table) {
+PublishedValue read_published(TableReader table, bool measured) {
   PublishedValue published;
   published.set = table.required<std::string>("set");
   published.component = table.required_choice("component", directions());
@@ -40,7 +46,19 @@ PublishedValue read_published(TableReader table) {
   if (published.value == 0.0)
     table.fail("value", "= 0 must not be zero: results are reported as shares of it");
   published.source = table.required<std::string>("source");
-  for (const auto& program : table.tables("programs")) published.programs.push_back(read_program(program));
+  published.at = table.optional<Vector>("at", Range::any());
+  if (published.at && published.component.size() > 1)
+    table.fail("at", fmt::format("is for displacements; component is '{}'", published.component));
+  if (measured) {
+    published.scatter = table.required<double>("scatter", Range::at_least(0.0));
+    if (table.optional<std::string>("of")) {
+      const auto words = words_of(Feature{});
+      const std::string word = table.required_choice("of", {words.begin(), words.end()});
+      published.of = static_cast<Feature>(std::ranges::find(words, word) - words.begin());
+    }
+  } else {
+    for (const auto& program : table.tables("programs")) published.programs.push_back(read_program(program));
+  }
   table.finish();
   return published;
 }
@@ -63,11 +81,14 @@ Expectation read_expectation(TableReader table) {
   Expectation expected;
   expected.method = table.required_choice("method", method_names());
   expected.kappa = read_kappa(table);
-  expected.reference = table.required_choice("reference", {"golden", "truth", "published"});
+  expected.reference = table.required_choice("reference", {"golden", "truth", "published", "measured"});
+  const std::map<std::string, std::vector<std::string>> figures{
+      {"published", {"relative_error"}}, {"measured", {"relative_error", "period_error"}}};
+  const auto own = figures.find(expected.reference);
   expected.figure = table.required_choice(
       "figure",
-      expected.reference == "published"
-          ? std::vector<std::string>{"relative_error"}
+      own != figures.end()
+          ? own->second
           : std::vector<std::string>{"max_relative_error", "profile_relative_error", "rms_relative_error"});
   expected.below = table.optional<double>("below");
   expected.above = table.optional<double>("above");
@@ -101,7 +122,10 @@ Comparison read_comparison(const CaseSettings& settings) {
   comparison.truth = folder / ".." / "reference" / "truth" / (settings.name + ".h5");
   if (auto profile = reader.table("profile")) comparison.profile = read_profile(*profile);
   if (auto table = reader.table("comparison")) read_comparison_table(*table, folder, comparison);
-  for (const auto& table : reader.tables("published")) comparison.published.push_back(read_published(table));
+  for (const bool measured : {false, true}) {
+    for (const auto& table : reader.tables(measured ? "measured" : "published"))
+      comparison.published.push_back(read_published(table, measured));
+  }
   for (const auto& table : reader.tables("expect"))
     comparison.expectations.push_back(read_expectation(table));
   return comparison;
@@ -111,7 +135,19 @@ Comparison read_comparison(const Scene& scene) {
   Comparison comparison = read_comparison(scene.settings);
   const auto require_set = [&](const char* key, const std::string& set) { node_set(scene, key, set); };
   if (comparison.profile) require_set("profile.set", comparison.profile->set);
-  for (const auto& published : comparison.published) require_set("published.set", published.set);
+  for (const auto& [set, component, value, source, programs, scatter, at, of] : comparison.published) {
+    const std::string table = scatter ? "measured" : "published";
+    require_set((table + ".set").c_str(), set);
+    if (of != Feature::end && scene.settings.quasi_static) {
+      throw InputError(fmt::format("{}: measured.of = '{}' is for dynamic cases; the answer is quasi-static",
+                                   scene.settings.file.string(), words_of(of)[static_cast<std::size_t>(of)]));
+    }
+    if (!at || point_weights(scene.mesh.points, scene.sets.at(set), *at)) continue;
+    throw InputError(fmt::format(
+        "{}: {}.at = {} is not in the plane of the set '{}'; a point that moves with a set must be in the "
+        "line, plane or space that its nodes span",
+        scene.settings.file.string(), table, *at, set));
+  }
   return comparison;
 }
 
@@ -121,9 +157,11 @@ std::string describe_comparison_keys() {
 [comparison] kappas = [numbers], golden = "FILE.h5", truth = "FILE.h5"
 [[published]] set = NAME, component = "x", ... or "around-x", ..., value in m or rad: mean displacement or
   rotation of the set, source: a text
+[[measured]] the same, with scatter: of its repetitions, at = [x, y, z]: instead of the mean the displacement of
+  a point that moves with the set (also of [[published]]), of: "end", "peak" or "period" (s) of a motion
 [[published.programs]] program: its name and element, values = [numbers] of the same motion, elements = [number
   per side of each mesh, as in the variants' names] (without it: one value, converged or on an unknown mesh), source
-[[expect]] method, kappa (number, "auto" or "best"), reference ("golden", "truth" or "published"),
+[[expect]] method, kappa (number, "auto" or "best"), reference ("golden", "truth", "published" or "measured"),
   figure, below or above, reason
 )";
 }

@@ -20,13 +20,23 @@ struct ProgramValues {
   std::string source;
 };
 
-/// A published motion of a node set.
+/// What a value is of: the answer or, of a motion sampled at its frames, the first extremum or the time from
+/// there to the next one on the same side.
+enum class Feature { end, peak, period };
+constexpr std::array<std::string_view, 3> words_of(Feature /*type*/) {
+  return {"end", "peak", "period"};
+}
+
+/// A published motion of a node set, computed by other programs or measured.
 struct PublishedValue {
   std::string set;
   std::string component;  ///< "x", "y", "z": mean displacement; "around-x", ...: mean rotation
-  double value = 0.0;     ///< m or rad; not zero
+  double value = 0.0;     ///< m or rad, of a period s; not zero
   std::string source;     ///< where it was published
   std::vector<ProgramValues> programs = {};
+  std::optional<double> scatter = {};  ///< of a measurement, in the unit of the value; else none
+  std::optional<Vector> at = {};       ///< instead of the mean: a point that moves with the set, m
+  Feature of = Feature::end;
 };
 
 /// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.
@@ -40,21 +50,22 @@ struct Profile {
 struct Expectation {
   std::string method;
   std::string kappa = "auto";   ///< a number, "auto", or "best": the smallest figure over the case's kappas
-  std::string reference;        ///< "golden", "truth" or "published"
+  std::string reference;        ///< "golden", "truth", "published" or "measured"
   std::string figure;           ///< "max_relative_error", "profile_relative_error" or "rms_relative_error";
-                                ///< "relative_error" of published values
+                                ///< "relative_error" of published and measured values, without periods;
+                                ///< "period_error" of measured periods
   std::optional<double> below;  ///< the figure must be at most this, fraction
   std::optional<double> above;  ///< the figure must be more than this: the method must fail visibly
   std::string reason;
 };
 
 /// The tables of a case file about answers and their limits, which the library does not read: [profile],
-/// [comparison], [[published]] and [[expect]].
+/// [comparison], [[published]], [[measured]] and [[expect]].
 struct Comparison {
   std::optional<Profile> profile;
   std::vector<double> kappas;  ///< the curve that `sandglass verify` computes in addition to `auto`
   std::vector<Expectation> expectations;
-  std::vector<PublishedValue> published;
+  std::vector<PublishedValue> published;  ///< and measured
   std::filesystem::path golden;
   std::filesystem::path truth;
 };

@@ -109,9 +109,11 @@ std::string published_tables(const std::vector<Verdict>& verdicts) {
       if (verdict.family == name && !verdict.published.empty()) family.push_back(&verdict);
     }
     text += program_tables(family);
-    text +=
-        table(family, fmt::format("{}: computed over published ({})", name, sources_of(columns_of(family))),
-              &PublishedResult::ratio);
+    text += table(family,
+                  fmt::format("{}: computed over {} ({})", name,
+                              family.front()->published.front().published.scatter ? "measured" : "published",
+                              sources_of(columns_of(family))),
+                  &PublishedResult::ratio);
     const bool any_truth = std::any_of(family.begin(), family.end(), [](const Verdict* v) {
       return v->published.front().truth.has_value();
     });

@@ -86,6 +86,9 @@ Json to_record(const PublishedResult& result) {
           {"published", published.value},
           {"computed", or_null(result.computed)},
           {"ratio", or_null(result.ratio())},
+          {"scatter", or_null(published.scatter)},
+          {"of", words_of(published.of)[static_cast<std::size_t>(published.of)]},
+          {"golden", or_null(result.golden)},
           {"truth", or_null(result.truth)},
           {"ratio_to_truth", or_null(result.ratio_to_truth())},
           {"programs", std::move(programs)}};
