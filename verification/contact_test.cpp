@@ -38,6 +38,7 @@ std::vector<Obstacle> obstacles_at_origin() {
     one.label = "tool";
     one.set = "all";
     one.displacement = {0.02, 0.01, -0.03};
+    one.method = Obstacle::Method::penalty;
   }
   return all;
 }

@@ -69,8 +69,15 @@ class ContactForce : public BodyForce {
   virtual void set_contact_stiffness(Factors factors, NodalRows u, const Row<double>* memory,
                                      AtNodes<Row<float>> roots) const = 0;
 
-  /// Why static equilibrium is not defined with it; empty if it is.
-  virtual std::string_view no_rest() const = 0;
+  /// The force that takes its place in static equilibrium; none: it is the same.
+  virtual std::shared_ptr<const BodyForce> at_rest() const { return nullptr; }
+
+  /// The body was moved to static equilibrium and stopped there: sets the rows such that the next step of a
+  /// motion is the first, and adds the forces at rest (N).
+  virtual void begin_again(Factors factors, NodalRows u, Row<double>* memory,
+                           AtNodes<Row<double>> forces) const {
+    add_contact(factors, u, memory, forces);
+  }
 
   /// As without friction.
   void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const final {
@@ -92,6 +99,15 @@ inline std::vector<const ContactForce*> contacts_of(const BodyForces& forces) {
     if (const auto* contact = dynamic_cast<const ContactForce*>(force.get())) contacts.push_back(contact);
   }
   return contacts;
+}
+
+/// The forces on a body in static equilibrium.
+inline BodyForces at_rest(BodyForces forces) {
+  for (auto& force : forces) {
+    const auto* contact = dynamic_cast<const ContactForce*>(force.get());
+    if (auto rest = contact != nullptr ? contact->at_rest() : nullptr) force = std::move(rest);
+  }
+  return forces;
 }
 
 }  // namespace sandglass

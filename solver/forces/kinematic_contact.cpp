@@ -7,7 +7,7 @@ namespace sandglass {
 
 namespace {
 
-constexpr std::string_view in_steps = "its method = 'kinematic' moves nodes within time steps";
+constexpr std::string_view in_steps = "it moves nodes within time steps";
 
 /// A row for the position (m) of the obstacle at the end of the last step, one for its motion in it, and for
 /// each node one for its motion in it relative to the obstacle.
@@ -59,7 +59,21 @@ class KinematicContact final : public ObstacleContact {
   void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
                              AtNodes<Row<float>> /*roots*/) const override {}
   std::size_t memory() const override { return Memory::own + own + nodes_.size(); }
-  std::string_view no_rest() const override { return in_steps; }
+
+  std::shared_ptr<const BodyForce> at_rest() const override {
+    return make_penalty_contact(nodes_, obstacle_, shape_, curve_, start_);
+  }
+
+  void begin_again(Factors factors, NodalRows u, Row<double>* rows,
+                   AtNodes<Row<double>> forces) const override {
+    const auto rest = make_penalty_contact(nodes_, obstacle_, shape_, curve_, start_);
+    Rows<double> of_rest(rest->memory());
+    rest->add_contact(factors, u, of_rest.data(), forces);
+    Memory memory(rows);
+    memory.pushes = of_rest[0];
+    memory.moves = of_rest[1];
+    memory.of_nodes[0] = {};
+  }
 
  private:
   static constexpr std::size_t own = 2;

@@ -20,10 +20,11 @@ struct Obstacle {
     return {"plane", "sphere", "capsule", "cylinder", "box", "ellipsoid", "surface"};
   }
 
-  /// Penalty: a force in proportion to the depth. Kinematic: in every step, nodes are moved back onto it.
-  enum class Method { penalty, kinematic };
+  /// Of motions. Kinematic: in every step, nodes are moved back onto it. Penalty: a force in proportion to
+  /// the depth, as always in static equilibrium.
+  enum class Method { kinematic, penalty };
   friend constexpr std::array<std::string_view, 2> words_of(Method /*type*/) {
-    return {"penalty", "kinematic"};
+    return {"kinematic", "penalty"};
   }
 
   std::string label;
@@ -39,8 +40,8 @@ struct Obstacle {
   Vector displacement{};  ///< at the factor one, m
   LoadCurve curve = {};
   double friction = 0.0;   ///< Coulomb's coefficient
-  double penalty = 100.0;  ///< see parameters
-  Method method = Method::penalty;
+  double penalty = 250.0;  ///< see parameters
+  Method method = Method::kinematic;
 
   static constexpr auto parameters() {
     using O = Obstacle;
@@ -72,12 +73,12 @@ struct Obstacle {
         Parameter{
             &O::penalty, "penalty", "-", Range::positive(),
             "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of the "
-            "elements that may touch it; motions take longer steps with a smaller one",
+            "elements that may touch it",
             false},
         Parameter{
             &O::method, "method", "-", Range::any(),
-            "penalty, or kinematic in motions: every step moves nodes back onto it, and steps are as long as "
-            "without it",
+            "of motions: kinematic moves nodes back onto it in steps as long as without it; penalty pushes "
+            "them, in shorter steps, and loses no energy; static equilibrium takes the penalty",
             false}};
   }
   std::optional<BrokenRule> broken_rule() const;

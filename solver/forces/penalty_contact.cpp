@@ -102,8 +102,6 @@ class PenaltyContact final : public ObstacleContact {
 
   std::size_t memory() const override { return Memory::own + by_node() * nodes_.size(); }
 
-  std::string_view no_rest() const override { return traits().no_potential; }
-
   /// Holds nodes that touch it at the start: a load may pull them away, but then no equilibrium is found.
   void add_holds(std::vector<Hold>& holds) const override {
     const Rows<double> undeformed(nodes_.size());

@@ -35,7 +35,7 @@ float eigenvalue_bound(const Tensor<float>& D, const Tensor<float>& M) {
 
 void SaddleLevel::resize(std::size_t rows, std::size_t cells) {
   free_.assign(rows, {});
-  relaxation_.assign(rows, {});
+  diagonal_.assign(rows, {});
   compliance_.assign(cells, 0.0f);
   schur_.assign(cells, 0.0f);
   y_ = zero();
@@ -48,7 +48,7 @@ void SaddleLevel::resize(std::size_t rows, std::size_t cells) {
 void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   for (std::size_t r = 0; r < free_.size(); ++r) {
     for (std::size_t i = 0; i < 3; ++i) {
-      relaxation_[r][i] = free_[r][i] > 0.0f ? relaxation_step / (bound * diagonal[r][i]) : 0.0f;
+      diagonal_[r][i] = free_[r][i] > 0.0f ? relaxation_step / (bound * diagonal[r][i]) : 0.0f;
     }
   }
   // At each node, S couples the cells around it through M = sum of b b^T / (b^T D b): the largest eigenvalue
@@ -56,7 +56,7 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   schur_ = compliance_;
   std::vector<Tensor<float>> M(free_.size());
   for_each_corner([&](std::size_t cell, std::size_t row, const std::array<float, 3>& b) {
-    const Row<float>& D = relaxation_[row];
+    const Row<float>& D = diagonal_[row];
     Row<float> Db{{D[0] * b[0], D[1] * b[1], D[2] * b[2]}};
     if (!contact_.empty()) hold_back(row, Db, Db);
     const float own = Db[0] * b[0] + Db[1] * b[1] + Db[2] * b[2];
@@ -70,14 +70,14 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   });
   float largest = 1.0f;
   for (std::size_t r = blocks_.u.own().first / 4; r < blocks_.u.own().last / 4; ++r)
-    largest = std::max(largest, eigenvalue_bound(full_relaxation(r), M[r]));
+    largest = std::max(largest, eigenvalue_bound(relaxation(r), M[r]));
   largest = static_cast<float>(blocks_.u.ranks().largest(largest));
   for (float& s : schur_) s = s > 0.0f ? 1.0f / (largest * s) : 0.0f;
 }
 
 /// By the formula of Sherman and Morrison.
 void SaddleLevel::hold_back(std::size_t row, Row<float> relaxed, Row<float>& u) const {
-  const Row<float>&s = contact_[row], &D = relaxation_[row];
+  const Row<float>&s = contact_[row], &D = diagonal_[row];
   float stiffness = relaxation_step, force = 0.0f;
   for (std::size_t i = 0; i < 3; ++i) {
     stiffness += D[i] * s[i] * s[i];
@@ -86,41 +86,45 @@ void SaddleLevel::hold_back(std::size_t row, Row<float> relaxed, Row<float>& u) 
   for (std::size_t i = 0; i < 3; ++i) u[i] -= D[i] * s[i] * force / stiffness;
 }
 
-Tensor<float> SaddleLevel::full_relaxation(std::size_t row) const {
+Tensor<float> SaddleLevel::relaxation(std::size_t row) const {
   Tensor<float> full;
   for (std::size_t j = 0; j < 3; ++j) {
     Row<float> column;
-    column[j] = relaxation_[row][j];
+    column[j] = diagonal_[row][j];
     if (!contact_.empty()) hold_back(row, column, column);
     for (std::size_t i = 0; i < 3; ++i) full(static_cast<int>(i), static_cast<int>(j)) = column[i];
   }
   return full;
 }
 
+void SaddleLevel::relax(float share, const Rows<float>& f, Rows<float>& u) const {
+  const float *D = numbers_of(diagonal_), *force = numbers_of(f);
+  float* moved = numbers_of(u);
+  for_all(blocks_.u, [=](std::size_t k) { moved[k] += share * D[k] * force[k]; });
+  for (const std::size_t row : touching_) {
+    Row<float> relaxed;
+    for (std::size_t i = 0; i < 3; ++i) relaxed[i] = share * diagonal_[row][i] * f[row][i];
+    hold_back(row, relaxed, u[row]);
+  }
+}
+
 void SaddleLevel::smooth_from_zero(const MixedVector& b, MixedVector& x) {
-  const float *f = numbers_of(b.u), *D = numbers_of(relaxation_);
-  float* u = numbers_of(x.u);
-  for_all(blocks_.u, [=](std::size_t k) { u[k] = D[k] * f[k]; });
-  for (const std::size_t row : touching_) hold_back(row, x.u[row], x.u[row]);
-  std::fill(x.p.begin(), x.p.end(), 0.0f);
+  clear(x, blocks_);
+  relax(1.0f, b.u, x.u);
   relax_pressures(b, x);
 }
 
 void SaddleLevel::smooth(const MixedVector& b, MixedVector& x) {
   apply(x, y_);
-  const float *f = numbers_of(b.u), *D = numbers_of(relaxation_), *y = numbers_of(y_.u);
-  float* u = numbers_of(x.u);
-  for_all(blocks_.u, [=](std::size_t k) { u[k] += D[k] * (f[k] - y[k]); });
-  for (const std::size_t row : touching_) {
-    Row<float> relaxed;
-    for (std::size_t i = 0; i < 3; ++i) relaxed[i] = relaxation_[row][i] * (b.u[row][i] - y_.u[row][i]);
-    hold_back(row, relaxed, x.u[row]);
-  }
+  const float* f = numbers_of(b.u);
+  float* y = numbers_of(y_.u);
+  for_all(blocks_.u, [=](std::size_t k) { y[k] = f[k] - y[k]; });
+  relax(1.0f, y_.u, x.u);
   relax_pressures(b, x);
 }
 
 void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
-  const float *C = compliance_.data(), *D = numbers_of(relaxation_), *S = schur_.data();
+  const float *C = compliance_.data(), *D = numbers_of(diagonal_), *S = schur_.data();
   float *r = r_.data(), *d = change_.data(), *q = sum_.data(), *t = numbers_of(t_), *p = x.p.data();
   follow(x.u);
   divergence(x.u, r_);
@@ -148,13 +152,7 @@ void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
   }
   for_all(blocks_.p, [=](std::size_t k) { p[k] += q[k]; });
   gradient(sum_, t_);
-  float* u = numbers_of(x.u);
-  for_all(blocks_.u, [=](std::size_t k) { u[k] -= D[k] * t[k]; });
-  for (const std::size_t row : touching_) {
-    Row<float> relaxed;
-    for (std::size_t i = 0; i < 3; ++i) relaxed[i] = -relaxation_[row][i] * t_[row][i];
-    hold_back(row, relaxed, x.u[row]);
-  }
+  relax(-1.0f, t_, x.u);
   follow(x.u);
 }
 

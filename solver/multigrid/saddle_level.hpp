@@ -47,12 +47,16 @@ class SaddleLevel {
   /// r = b - (A u + B^T p, B u - C p), zero on constrained components.
   void residual(const MixedVector& b, const MixedVector& x, MixedVector& r) const;
 
-  /// The diagonal matrix D (m/N): the diagonal of A, inverted and scaled such that D A has eigenvalues below
-  /// 2; zero on constrained components. Without springs of contact, which are added for each node.
-  const Rows<float>& relaxation() const { return relaxation_; }
+  /// A row's block of D (m/N): the diagonal of A, inverted and scaled such that D A has eigenvalues below 2;
+  /// zero on constrained components. A spring of contact is part of it: with the spring s, D becomes the
+  /// inverse of D^-1 + s s^T, scaled as D.
+  Tensor<float> relaxation(std::size_t row) const;
 
-  /// Springs along one direction for each row, which has the length of the root of the stiffness (N/m); empty
-  /// without any.
+  /// Adds a share of D f (m), f in N, to displacements u (m).
+  void relax(float share, const Rows<float>& f, Rows<float>& u) const;
+
+  /// Springs of contact along one direction for each row, which has the length of the root of the stiffness
+  /// (N/m); empty without any.
   const Rows<float>& contact() const { return contact_; }
 
   /// 1, or 0 on constrained components and unused rows.
@@ -79,17 +83,14 @@ class SaddleLevel {
   std::vector<std::size_t> touching_;  // rows with springs of contact
 
  private:
-  /// Takes from u (m) of a row the share of a relaxed force D f (m) that its spring s bears: D becomes the
-  /// inverse of D^-1 + s s^T, scaled as D.
+  /// Takes from u (m) of a row the share of a force, relaxed without the row's spring (m), that the spring
+  /// bears.
   void hold_back(std::size_t row, Row<float> relaxed, Row<float>& u) const;
-
-  /// D of a row with its spring.
-  Tensor<float> full_relaxation(std::size_t row) const;
 
   void relax_pressures(const MixedVector& b, MixedVector& x);
 
   int pressure_steps_;
-  Rows<float> relaxation_;    // D
+  Rows<float> diagonal_;      // of D without springs of contact
   std::vector<float> schur_;  // the inverse of the diagonal of S, scaled such that its product with S has
                               // eigenvalues up to 1
   MixedVector y_;             // scratch

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "forces/contact_force.hpp"
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/quality.hpp"
@@ -155,7 +156,7 @@ void make_forces(const Case& description, Scene& scene, std::vector<double>& mas
                          .cells = scene.mesh.cells,
                          .young_moduli = young_moduli(scene.mesh, scene.materials)};
   description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
-  scene.forces = resolver.all();
+  scene.forces = description.quasi_static ? at_rest(resolver.all()) : resolver.all();
   scene.curves = std::move(resolver.curves);
   scene.attached_masses = std::move(resolver.attached);
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "forces/contact_force.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -101,6 +103,7 @@ Scene with_load(Scene scene, const std::vector<double>& imposed, double time, do
     scene.constraints[k] = {node, component, {{imposed[k]}}};
   }
   for (LoadCurve& curve : scene.curves) curve = {.share = curve.at(time, load_factor)};
+  scene.forces = at_rest(std::move(scene.forces));
   return scene;
 }
 

@@ -55,8 +55,8 @@ struct Scene {
 /// The scene on a part of its mesh, fixed at the rim. The mesh must not have ties.
 Scene on_part(const Scene& whole, const MeshPart& part);
 
-/// The scene whose full load is the load of another at a time (s) and load factor, but with the given imposed
-/// displacements: a value (m) for each constraint.
+/// The scene at rest whose full load is the load of another at a time (s) and load factor, but with the given
+/// imposed displacements: a value (m) for each constraint.
 Scene with_load(Scene scene, const std::vector<double>& imposed, double time, double load_factor);
 
 /// The scene with imposed displacements, angles, forces and initial velocities multiplied by a factor.

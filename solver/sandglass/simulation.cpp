@@ -85,6 +85,7 @@ class Simulation<Real>::Parts {
     elements().set_levels(body.state(), observer.levels);
     body.impose(to_, factor_to_, leapfrog_.time());
     body.evaluate_forces();
+    body.begin_again();
     std::fill(body.state().increment.begin(), body.state().increment.end(), Row<Real>{});
     imposed_ = to_;
     factor_ = factor_to_;

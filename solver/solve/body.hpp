@@ -99,6 +99,9 @@ class Body {
   /// See Loads::slide.
   void slide(const Rows<Real>& before, Rows<Real>& u) const { loads_.slide(before, u); }
 
+  /// See Loads::begin_again.
+  void begin_again() { loads_.begin_again(of_all(state_.u)); }
+
   /// See Loads::fix_contact.
   void fix_contact(bool fixed) { loads_.fix_contact(fixed); }
 

@@ -160,6 +160,14 @@ void Loads<Real>::slide(const Rows<Real>& before, Rows<Real>& u) const {
 }
 
 template <class Real>
+void Loads<Real>::begin_again(const Rows<Real>& u) {
+  const Rows<double> there = loaded(u);
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->begin_again(factors_, by_node(there.data()), memory_.data() + memory_of_[c],
+                              by_node(touching_.data()));
+}
+
+template <class Real>
 void Loads<Real>::fix_contact(bool fixed) {
   for (std::size_t c = 0; c < contacts_.size(); ++c)
     contacts_[c]->fix_contact(fixed, memory_.data() + memory_of_[c]);

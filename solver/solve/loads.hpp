@@ -35,6 +35,9 @@ class Loads {
   /// See ContactForce::slide.
   void slide(const Rows<Real>& before, Rows<Real>& u) const;
 
+  /// See ContactForce::begin_again; at the displacements u (m).
+  void begin_again(const Rows<Real>& u);
+
   /// See ContactForce::fix_contact.
   void fix_contact(bool fixed);
 

@@ -42,6 +42,11 @@ constexpr double most_rounding = 1e-4;
 /// rounding of lambda.
 constexpr double most_lambda_over_mu = 1e4;
 
+/// With obstacles it is that of Poisson's ratio 0.49. Stiff springs of contact hold all nodes of some boxes
+/// of the grids, where then only 1 / lambda limits the pressures: with a larger lambda they would grow far
+/// beyond those of the elements.
+constexpr double most_lambda_over_mu_in_contact = 50.0;
+
 /// Of the undeformed laws and of the method's control.
 std::vector<ModelModuli> moduli_of(const Model& model) {
   const MethodChoice& choice = model.choice();
@@ -60,6 +65,9 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
   return by_material(model.scene().materials,
                      [&](const Material& material) { return std::visit(moduli, material.law); });
 }
+
+/// The smallest share of a block of D that elimination leaves: less is rounding.
+constexpr float least_pivot = 1e-6f;
 
 /// The share of forces in the diagonal of the stiffness, N/m; empty if there is none.
 Rows<float> stiffness_of_forces(const Scene& scene, const Layout& layout) {
@@ -150,8 +158,9 @@ template <class Real>
 void MixedBody<Real>::update_multigrid() {
   std::vector<ModelModuli> moduli = moduli_;
   const std::vector<double> lambdas = remaining(linearized_penalty_);
+  const double most = contact_.empty() ? most_lambda_over_mu : most_lambda_over_mu_in_contact;
   for (std::size_t m = 0; m < moduli.size(); ++m)
-    moduli[m].lambda = std::min(lambdas[m], most_lambda_over_mu * moduli[m].mu);
+    moduli[m].lambda = std::min(lambdas[m], most * moduli[m].mu);
   multigrid_.update(linearized_at_, moduli, stiffening_of_laws());
   linearized_ = true;
 }
@@ -201,14 +210,22 @@ auto MixedBody<Real>::multipliers(double penalty) const -> Multipliers {
 
 template <class Real>
 void MixedBody<Real>::weigh() {
-  const auto& diagonal = multigrid_.elements().relaxation();
-  for (std::size_t row = 0; row < diagonal.size(); ++row) {
-    for (std::size_t i = 0; i < 3; ++i) weights_.u[row][i] = std::sqrt(diagonal[row][i]);
-    if (contact_.empty()) continue;
-    const Row<float>& s = contact_[row];
-    const float sum = std::abs(s[0]) + std::abs(s[1]) + std::abs(s[2]);
-    for (std::size_t i = 0; i < 3; ++i)
-      weights_.u[row][i] /= std::sqrt(1.0f + diagonal[row][i] * std::abs(s[i]) * sum);
+  couplings_.clear();
+  for (std::size_t row = 0; row < weights_.u.size(); ++row) {
+    const Tensor<float> D = multigrid_.elements().relaxation(row);
+    const bool touches = !contact_.empty() && contact_[row].x != Row<float>{}.x;
+    Tensor<float> root{};
+    for (int j = 0; j < 3; ++j) {
+      for (int i = j; i < 3; ++i) {
+        float left = D(i, j);
+        for (int k = 0; k < j; ++k) left -= root(i, k) * root(j, k);
+        root(i, j) = i == j              ? std::sqrt(std::max(left, least_pivot * D(i, i)))
+                     : root(j, j) > 0.0f ? left / root(j, j)
+                                         : 0.0f;
+      }
+      weights_.u[row][at(j)] = root(j, j);
+    }
+    if (touches) couplings_.push_back({row, root(1, 0), root(2, 0), root(2, 1)});
   }
   for_each_element([&](std::size_t e, std::size_t c) {
     weights_.p[c] = static_cast<float>(std::sqrt(moduli_[materials_.of(e)].mu / volume(e)));
@@ -235,15 +252,13 @@ void MixedBody<Real>::compare() {
   replace_pressures(p_, lambdas_);
   const Real *f = numbers_of(body_.free_forces()), *g = numbers_of(pressure_force_),
              *free = numbers_of(free_);
-  const float* w = numbers_of(weights_.u);
   float* r = numbers_of(residuals_.u);
   multigrid_.elements().blocks().u.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
-    for (std::size_t k = first; k < last; ++k) r[k] = w[k] * static_cast<float>(f[k] + free[k] * g[k]);
+    for (std::size_t k = first; k < last; ++k) r[k] = static_cast<float>(f[k] + free[k] * g[k]);
   });
-  for_each_element([&](std::size_t e, std::size_t c) {
-    residuals_.p[c] = weights_.p[c] * static_cast<float>(defect_[e]);
-  });
+  for_each_element([&](std::size_t e, std::size_t c) { residuals_.p[c] = static_cast<float>(defect_[e]); });
+  weigh(residuals_);
 }
 
 template <class Real>
@@ -288,38 +303,50 @@ void MixedBody<Real>::differentiate(const MixedVector& direction, double length,
 template <class Real>
 template <class Term>
 double MixedBody<Real>::sum_over_components(const Term& term) const {
-  const float *k = numbers_of(multigrid_.elements().stiffness()), *w = numbers_of(weights_.u);
-  const Real *u = numbers_of(body_.state().u), *f = numbers_of(body_.free_forces());
+  const float* k = numbers_of(multigrid_.elements().stiffness());
+  const Real* u = numbers_of(body_.state().u);
   return multigrid_.elements().blocks().u.sum([&](std::size_t first, std::size_t last) {
     double sum = 0.0;
-    for (std::size_t n = first; n < last; ++n) {
-      sum += term(static_cast<double>(k[n]), static_cast<double>(u[n]),
-                  static_cast<double>(w[n]) * static_cast<double>(f[n]));
-    }
+    for (std::size_t n = first; n < last; ++n)
+      sum += term(static_cast<double>(k[n]), static_cast<double>(u[n]));
     return sum;
   });
 }
 
 template <class Real>
 bool MixedBody<Real>::at_rounding(bool in_both) const {
-  const double energy = sum_over_components([](double k, double u, double) { return k * u * u; });
+  const double energy = sum_over_components([](double k, double u) { return k * u * u; });
   const double limit = rounding<Real> * std::sqrt(energy);
-  return (in_both && norm() <= limit) ||
-         std::sqrt(sum_over_components([](double, double, double f) { return f * f; })) <= limit;
+  if (in_both && norm() <= limit) return true;
+  MixedVector forces = multigrid_.elements().zero();
+  forces.u = rounded_rows<float>(body_.free_forces());
+  weigh(forces);
+  return std::sqrt(dot(forces, forces, multigrid_.elements().blocks())) <= limit;
 }
 
 template <class Real>
 bool MixedBody<Real>::bears_nothing() const {
-  const double square = sum_over_components([](double, double u, double) { return u * u; });
+  const double square = sum_over_components([](double, double u) { return u * u; });
   return body_.carried() <= unfelt_ * std::sqrt(square);
 }
 
 template <class Real>
 void MixedBody<Real>::weigh(MixedVector& residuals) const {
-  for (std::size_t row = 0; row < residuals.u.size(); ++row) {
-    for (std::size_t i = 0; i < 3; ++i) residuals.u[row][i] *= weights_.u[row][i];
+  const MixedBlocks& blocks = multigrid_.elements().blocks();
+  for (const auto& [row, yx, zx, zy] : couplings_) {  // the diagonal follows
+    Row<float>& f = residuals.u[row];
+    const Row<float>& w = weights_.u[row];
+    if (w[0] > 0.0f) f[0] += (yx * f[1] + zx * f[2]) / w[0];
+    if (w[1] > 0.0f) f[1] += zy * f[2] / w[1];
   }
-  for (std::size_t c = 0; c < residuals.p.size(); ++c) residuals.p[c] *= weights_.p[c];
+  const auto multiply = [](const float* w, float* r, const Blocks& numbers) {
+    numbers.for_each([=](std::size_t first, std::size_t last) {
+#pragma omp simd
+      for (std::size_t k = first; k < last; ++k) r[k] *= w[k];
+    });
+  };
+  multiply(numbers_of(weights_.u), numbers_of(residuals.u), blocks.u);
+  multiply(weights_.p.data(), residuals.p.data(), blocks.p);
 }
 
 template <class Real>
@@ -336,6 +363,12 @@ void MixedBody<Real>::correct(const MixedVector& weighted, MixedVector& step) {
   };
   divide(numbers_of(weighted.u), numbers_of(weights_.u), numbers_of(b_.u), blocks.u);
   divide(weighted.p.data(), weights_.p.data(), b_.p.data(), blocks.p);
+  for (const auto& [row, yx, zx, zy] : couplings_) {
+    Row<float>& f = b_.u[row];
+    const Row<float>& w = weights_.u[row];
+    if (w[1] > 0.0f) f[1] -= zy * f[2] / w[1];
+    if (w[0] > 0.0f) f[0] -= (yx * f[1] + zx * f[2]) / w[0];
+  }
   multigrid_.cycle(b_, step);
   multiply(static_cast<float>(size), step, blocks);
 }
@@ -344,10 +377,7 @@ template <class Real>
 void MixedBody<Real>::precondition(const MixedVector& r, MixedVector& z) {
   multigrid_.cycle(r, z);
   std::fill(z.p.begin(), z.p.end(), 0.0f);
-  const auto& D = multigrid_.elements().relaxation();
-  for (std::size_t row = 0; row < z.u.size(); ++row) {
-    for (std::size_t i = 0; i < 3; ++i) z.u[row][i] += added_diagonal * D[row][i] * r.u[row][i];
-  }
+  multigrid_.elements().relax(added_diagonal, r.u, z.u);
 }
 
 template <class Real>

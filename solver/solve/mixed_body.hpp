@@ -156,8 +156,7 @@ class MixedBody {
   void update_multigrid();
   void slide();
 
-  /// The sum over all components of a term of the stiffness (N/m), the displacement (m) and the weighted
-  /// force (root of J).
+  /// The sum over all components of a term of the stiffness (N/m) and the displacement (m).
   template <class Term>
   double sum_over_components(const Term& term) const;
 
@@ -176,6 +175,12 @@ class MixedBody {
     return static_cast<double>(defect_[element]) / volume(element) +
            static_cast<double>(multipliers.pressures[element]) / multipliers.given_up[materials_.of(element)];
   }
+
+  /// The rest of a row's L, where a spring of contact is oblique to the axes.
+  struct Coupling {
+    std::size_t row;
+    float yx, zx, zy;
+  };
 
   std::size_t cell(std::size_t element) const { return multigrid_.elements().cells()[element]; }
 
@@ -210,7 +215,8 @@ class MixedBody {
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
   Rows<Real> pressure_force_;
-  MixedVector weights_;  // roots of m/N and of Pa/m^3
+  MixedVector weights_;  // roots of m/N and of Pa/m^3: the diagonal of L, L L^T = D
+  std::vector<Coupling> couplings_;
   MixedVector residuals_;
   MixedVector b_;  // scratch
   double residual_ = 0.0;

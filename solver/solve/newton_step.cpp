@@ -124,12 +124,10 @@ class NewtonStep {
     return d;
   }
 
-  MixedVector steepest(MixedVector r) const {
-    const auto& D = mixed_.multigrid().elements().relaxation();
-    for (std::size_t row = 0; row < r.u.size(); ++row) {
-      for (std::size_t i = 0; i < 3; ++i) r.u[row][i] *= D[row][i];
-    }
-    return r;
+  MixedVector steepest(const MixedVector& r) const {
+    MixedVector d = mixed_.multigrid().elements().zero();
+    mixed_.multigrid().elements().relax(1.0f, r.u, d.u);
+    return d;
   }
 
   MixedBody<Real>& mixed_;

@@ -408,10 +408,11 @@ class Search {
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from, const NodalField* near) {
   require_held(model.scene());
   for (const ContactForce* contact : contacts_of(model.scene().forces)) {
-    if (contact->no_rest().empty()) continue;
+    const std::string_view reason = contact->traits().no_potential;
+    if (reason.empty()) continue;
     throw InputError(
         fmt::format("{}: [[{}]] has no static equilibrium: {}; allowed: a dynamic case, or leave that out",
-                    model.scene().settings.file.string(), contact->traits().name, contact->no_rest()));
+                    model.scene().settings.file.string(), contact->traits().name, reason));
   }
   const auto start = std::chrono::steady_clock::now();
   Relaxation result = method_named(model.choice().method).is_condensed

@@ -114,11 +114,13 @@ Rows<double> StaticTangent::residual(const Rows<double>& b, const Rows<double>& 
 }
 
 double StaticTangent::norm(const Rows<double>& forces) const {
-  const auto& D = mixed_.multigrid().elements().relaxation();
   double sum = 0.0;
   for (std::size_t row = 0; row < forces.size(); ++row) {
-    for (std::size_t i = 0; i < 3; ++i)
-      sum += static_cast<double>(D[row][i]) * forces[row][i] * forces[row][i];
+    const Tensor<float> D = mixed_.multigrid().elements().relaxation(row);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j)
+        sum += static_cast<double>(D(i, j)) * forces[row][at(i)] * forces[row][at(j)];
+    }
   }
   return std::sqrt(sum);
 }

@@ -61,6 +61,14 @@ void set_poisson_ratio(Trial& trial, double value) {
       trial.description.materials.front().law);
 }
 
+bool has_obstacles(const Case& description) {
+  return !description.forces.of<Obstacle>().empty();
+}
+
+void set_penalty(Trial& trial, double value) {
+  for (Obstacle& obstacle : trial.description.forces.of<Obstacle>()) obstacle.penalty = value;
+}
+
 void set_load(Trial& trial, double value) {
   trial.load = value;
 }
@@ -111,6 +119,13 @@ const std::vector<Axis>& list() {
        .apply = set_poisson_ratio,
        .possible = has_poisson_ratio,
        .needs = "a law with poisson_ratio"},
+      {.name = "penalty",
+       .range = Range::positive(),
+       .meaning = "penalty of the obstacles",
+       .values = {1, 3, 10, 30, 100, 300, 1000, 3000},
+       .apply = set_penalty,
+       .possible = has_obstacles,
+       .needs = "an [[obstacle]]"},
       {.name = "load",
        .range = Range::positive(),
        .meaning = "imposed motions and forces over those of the case",

@@ -15,6 +15,7 @@ inline Obstacle ceiling(double z, double down) {
   Obstacle made{.label = "plate", .set = "top", .point = {0.0, 0.0, z}, .normal = {0.0, 0.0, -2.0}};
   made.displacement = {0.0, 0.0, -down};
   made.penalty = 1.0;
+  made.method = Obstacle::Method::penalty;
   return made;
 }
 
@@ -22,6 +23,7 @@ inline Obstacle ceiling(double z, double down) {
 inline Obstacle ground() {
   Obstacle made{.label = "ground", .set = "foot", .normal = {0.0, 0.0, 1.0}};
   made.penalty = 1.0;
+  made.method = Obstacle::Method::penalty;
   return made;
 }
 
