@@ -5,6 +5,8 @@
 #include <variant>
 
 #include "answer.hpp"
+#include "commands.hpp"
+#include "commands/execution_options.hpp"
 #include "sandglass/simulation.hpp"
 
 namespace py = pybind11;
@@ -177,7 +179,7 @@ void move(AnySimulation& self, const std::string& set, const Doubles& displaceme
 
 SimulationSettings settings(std::optional<std::string> method, std::optional<double> kappa,
                             std::optional<double> damping, double step_fraction, int threads) {
-  require_threads(threads);
+  require_count("threads", threads, 1024);
   return {std::move(method), kappa, damping, step_fraction, threads};
 }
 
@@ -240,6 +242,7 @@ PYBIND11_MODULE(_sandglass, m) {
   py::register_exception<ComputationError>(m, "ComputationError", PyExc_RuntimeError);
 
   add_answers(m);
+  add_commands(m);
 
   py::class_<AnySimulation>(m, "Simulation", about_simulation)
       .def(py::init(&of_file), "case"_a, py::kw_only(), "precision"_a = "double", "method"_a = py::none(),

@@ -91,12 +91,15 @@ class Solution:
         names = ("kinetic", "strain", "hourglass", "external_work")
         return {name: float(self.history[name][-1]) for name in names}
 
-    def estimate(self):
-        """The estimated largest and rms distance from the mean-dilatation answer on this mesh, m.
+    def estimate(self, against="golden"):
+        """The estimated largest and rms distance of the displacements from a better answer, m.
 
-        Raises InputError for a motion, and ComputationError.
+        `against`: "golden", the mean-dilatation element on this mesh, or "truth", ever finer
+        meshes. Raises InputError for a motion, and ComputationError.
         """
-        return self._answer.estimate()
+        if not isinstance(against, str):
+            raise TypeError(f"against must be a text, but is a {type(against).__name__}")
+        return self._answer.estimate(against)
 
     def gradient(self, displacement=None, reactions=None, *, points=False):
         """The derivatives of a scalar J of this static answer by all that it depends on.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "assembly/internal_force.hpp"
 #include "base/error.hpp"
@@ -47,6 +48,18 @@ inline double parse_share(const char* option, const std::string& text) {
   throw InputError(
       fmt::format("{} = '{}' must be a share in (0, 1], such as 0.01, or in percent, such as 1%{}", option,
                   text, decimal_comma_hint(text)));
+}
+
+/// The value of an option that takes a time, in seconds. Throws InputError for anything else.
+inline double parse_time(const char* option, const std::string& text) {
+  if (const auto quantity = parse_quantity(text)) {
+    for (const auto& [unit, seconds] : {std::pair{"", 1.0}, {"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}) {
+      if (quantity->unit == unit) return quantity->value * seconds;
+    }
+  }
+  throw InputError(fmt::format(
+      "{} = '{}' must be a positive time in s, ms or us, such as 1ms; without a unit it is in s{}", option,
+      text, decimal_comma_hint(text)));
 }
 
 /// Throws InputError unless `value`, given by `option`, lies in [1, most].
