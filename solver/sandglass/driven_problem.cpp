@@ -60,6 +60,12 @@ const std::vector<int>& DrivenProblem::nodes(const std::string& set) const {
   return find(scene_.sets, set, "is not known");
 }
 
+void DrivenProblem::require_one_for_each_node(const std::string& set, std::size_t count) const {
+  if (count == nodes(set).size()) return;
+  throw InputError(fmt::format("set '{}': {} displacements; it must be one for each of its {} nodes", set,
+                               count, nodes(set).size()));
+}
+
 namespace {
 
 /// Sorts sets of numbers below `count`.

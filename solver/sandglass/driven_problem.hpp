@@ -49,6 +49,9 @@ class DrivenProblem {
   /// Throws InputError for an unknown set.
   const std::vector<int>& nodes(const std::string& set) const;
 
+  /// Throws InputError unless `count` is the number of nodes of a set.
+  void require_one_for_each_node(const std::string& set, std::size_t count) const;
+
   /// Calls set(constraint, u) for the driven components of a set, with u (m) from `displacement(n)` for the
   /// n-th node of the set. First throws InputError if any number is not finite.
   template <class Displacement, class Set>

@@ -9,6 +9,7 @@ generators, loads and settings are classes with the parameters of the case file:
 import _sandglass
 from _sandglass import ComputationError, InputError, Simulation, __version__
 from sandglass import commands, tables
+from sandglass.batch import Batch
 from sandglass.body import Body
 from sandglass.commands import *  # noqa: F401, F403
 from sandglass.gradient import Gradient
@@ -24,6 +25,7 @@ for _each in (ComputationError, InputError, Simulation):
     _each.__module__ = "sandglass"
 
 __all__ = [
+    "Batch",
     "Body",
     "ComputationError",
     "Gradient",

@@ -4,6 +4,7 @@ import os
 import tomllib
 
 import _sandglass
+from sandglass.batch import Batch
 from sandglass.mesh import Mesh, _named, mesh_of_case
 from sandglass.progress import shown
 from sandglass.quantity import quantity_text
@@ -151,6 +152,29 @@ class Body:
         return _sandglass.Simulation.of_mesh(
             points, cells, sets, text, element_sets=element_sets, **settings
         )
+
+    def batch(
+        self,
+        bodies,
+        *,
+        precision="double",
+        method=None,
+        kappa=None,
+        damping=None,
+        step_fraction=0.9,
+        threads=1,
+    ):
+        """An `sg.Batch` of this number of bodies, which move side by side and each in its own way.
+
+        They are undeformed, at rest or with the case's initial velocities. Keywords are those of
+        `sg.Simulation`. Raises InputError for what a batch does not support: other laws than
+        isotropic elastic ones, other forces than dead ones, ties, and methods without kernels for
+        batches, whose message lists those with them.
+        """
+        given = {"bodies": bodies, "precision": precision, "method": method, "kappa": kappa}
+        given |= {"damping": damping, "step_fraction": step_fraction, "threads": threads}
+        text = toml_text(self._case_tables())
+        return Batch(_sandglass.Batch(*self._mesh(), text, given), bodies)
 
     def save(self, file):
         """Writes the case file and, unless a generator or a file makes the mesh, its .h5."""
