@@ -138,7 +138,8 @@ def test_an_inverted_body_is_named_and_others_may_not_use_a_busy_batch():
     thread = threading.Thread(target=look)
     thread.start()
     try:
-        batch.advance(20.0)
+        while not refused:
+            batch.advance(20.0)
     finally:
         done.set()
         thread.join()
