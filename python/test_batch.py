@@ -144,5 +144,5 @@ def test_an_inverted_body_is_named_and_others_may_not_use_a_busy_batch():
         thread.join()
     assert refused == ["the batch is busy in another thread"]
     with pytest.raises(sg.ComputationError, match="body 1"):
-        batch.move("head", [(0, 0, 0), (0, 0, -0.25), (0, 0, 0)])
+        batch.move("head", [(0, 0, 0), (0, 0, -1), (0, 0, 0)])
         batch.advance(1.0)
