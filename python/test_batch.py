@@ -18,7 +18,11 @@ def body(*more, law=None, stiffness=1.0):
     modulus = 3000.0 * stiffness
     law = law or sg.NeoHookean(young_modulus=modulus, poisson_ratio=0.45, density=1000.0)
     box = sg.Box(size=(0.1, 0.1, 0.2), elements=(2, 2, 4))
-    sets = {"base": {"z": [0, 0]}, "head": {"z": [0.2, 0.2]}, "side": {"x": [0.1, 0.1], "z": [0.05, 0.15]}}
+    sets = {
+        "base": {"z": [0, 0]},
+        "head": {"z": [0.2, 0.2]},
+        "side": {"x": [0.1, 0.1], "z": [0.05, 0.15]},
+    }
     fixed = [sg.Displacement(set=name, value=(0, 0, 0)) for name in ("base", "head")]
     loads = [*fixed, sg.Force(set="side", total=(0.05, 0, 0)), sg.Dynamics(duration=1, damping=3)]
     return sg.Body(box, law, [*loads, *more], sets=sets)
