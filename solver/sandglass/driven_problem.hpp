@@ -22,7 +22,8 @@ void require_in_range(const char* name, double value, const Range& range);
 /// element, if a node belongs to no cell or has no finite position, and if there are no nodes.
 MeshWithSets checked(MeshArrays arrays);
 
-/// The number of equal steps of at most `step` (s) in a time (s); n for a time of n times `step`.
+/// The number of equal steps of at most `step` (s) in a time (s); n for a time of n times `step`. Throws
+/// InputError for more than can be counted.
 double steps_in(double seconds, double step);
 
 /// A driven component of a set.

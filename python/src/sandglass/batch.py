@@ -3,6 +3,7 @@
 import numpy as np
 
 import _sandglass
+from sandglass.arguments import integer, number, real_array
 
 
 class Batch:
@@ -23,8 +24,8 @@ class Batch:
         return self.bodies
 
     def scale_stiffness(self, factors):
-        """Multiplies all moduli of the case by a factor for each body, (bodies,)."""
-        self._batch.scale_stiffness(self._numbers("factors", factors))
+        """Multiplies all moduli of the case by a positive factor for each body, (bodies,)."""
+        self._batch.scale_stiffness(self._positive("factors", factors))
 
     def impose(self, factors):
         """Loads and imposed displacements at a load factor of each body, (bodies,).
@@ -38,7 +39,7 @@ class Batch:
 
         (3,) for all bodies, (bodies, 3), or (bodies, nodes of the set, 3).
         """
-        given = _real("displacements", displacements)
+        given = real_array("displacements", displacements)
         if given.shape == (3,):
             given = np.tile(given, (self.bodies, 1))
         shapes = [(self.bodies, 3), (self.bodies, len(self.nodes(set)), 3)]
@@ -60,9 +61,7 @@ class Batch:
 
         Returns an array (bodies, frames, n, 3), in the numbering of the mesh.
         """
-        if isinstance(frames, bool) or not hasattr(frames, "__index__"):
-            raise TypeError(f"frames must be an integer, but is a {type(frames).__name__}")
-        frames = frames.__index__()
+        frames, seconds = integer("frames", frames), number("seconds", seconds)
         if not 1 <= frames < 2**31:
             raise _sandglass.InputError(f"frames = {frames} must be in [1, 2^31)")
         if not hasattr({} if driven is None else driven, "items"):
@@ -70,7 +69,7 @@ class Batch:
         targets = {name: self._targets(name, rows, frames) for name, rows in (driven or {}).items()}
         course = None if factors is None else self._course(factors, frames)
         if stiffness is not None:
-            self._batch.scale_stiffness(self._numbers("stiffness", stiffness))
+            self._batch.scale_stiffness(self._positive("stiffness", stiffness))
         found = []
         for frame in range(frames):
             if course is not None:
@@ -108,16 +107,22 @@ class Batch:
         return f"<sg.Batch: {self.bodies} bodies at {self.time:.4g} s>"
 
     def _numbers(self, name, given):
-        numbers = _real(name, given)
+        numbers = real_array(name, given)
         if numbers.shape == ():
             numbers = np.full(self.bodies, float(numbers))
         if numbers.shape != (self.bodies,):
             _refuse_shape(name, [f"({self.bodies},)"], numbers)
         return numbers
 
+    def _positive(self, name, given):
+        numbers = self._numbers(name, given)
+        if not (numbers > 0).all():
+            raise _sandglass.InputError(f"{name} must be positive, but has {numbers.min()}")
+        return numbers
+
     def _course(self, factors, frames):
         """Load factors at the ends of frames, (bodies, frames)."""
-        given = _real("factors", factors)
+        given = real_array("factors", factors)
         if given.shape == (self.bodies, frames) and given.ndim == 2:
             return given
         if given.shape not in ((), (self.bodies,)):
@@ -125,26 +130,11 @@ class Batch:
         return self._numbers("factors", given)[:, None] * np.arange(1, frames + 1) / frames
 
     def _targets(self, name, rows, frames):
-        given = _real(f"driven: '{name}'", rows)
+        given = real_array(f"driven: '{name}'", rows)
         allowed = [(self.bodies, frames, 3), (self.bodies, frames, len(self.nodes(name)), 3)]
         if given.shape not in allowed:
             _refuse_shape(f"driven: '{name}'", map(str, allowed), given)
         return given
-
-
-def _real(name, given):
-    """An array of numbers, which are finite. Raises TypeError and InputError that name it."""
-    try:
-        array = np.asarray(given)
-    except ValueError:
-        array = np.asarray(None)
-    if array.dtype.kind not in "iuf":
-        kind = type(given).__name__
-        raise TypeError(f"{name} must be an array of numbers, but is a {kind} of {array.dtype}")
-    array = np.ascontiguousarray(array, dtype=float).reshape(array.shape)
-    if not np.isfinite(array).all():
-        raise _sandglass.InputError(f"{name} must be finite")
-    return array
 
 
 def _refuse_shape(name, shapes, array):

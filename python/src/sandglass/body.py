@@ -4,10 +4,10 @@ import os
 import tomllib
 
 import _sandglass
+from sandglass.arguments import path_text, quantity_text
 from sandglass.batch import Batch
 from sandglass.mesh import Mesh, _named, mesh_of_case
 from sandglass.progress import shown
-from sandglass.quantity import quantity_text
 from sandglass.solution import Solution
 from sandglass.tables import Table, class_for, plain
 from sandglass.toml_text import toml_text
@@ -58,7 +58,7 @@ class Body:
     @classmethod
     def read(cls, file):
         """The body of a case file without [[variants]]. Raises InputError."""
-        file = os.fspath(file)
+        file = path_text("file", file)
         try:
             with open(file, "rb") as stream:
                 case = tomllib.load(stream)
@@ -178,7 +178,7 @@ class Body:
 
     def save(self, file):
         """Writes the case file and, unless a generator or a file makes the mesh, its .h5."""
-        file = os.fspath(file)
+        file = path_text("file", file)
         mesh_file = os.path.splitext(file)[0] + ".h5"
         if self.mesh._table is None:
             self.mesh.save(mesh_file)

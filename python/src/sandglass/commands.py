@@ -13,9 +13,9 @@ import pathlib
 import tempfile
 
 import _sandglass
+from sandglass.arguments import path_text, quantity_text
 from sandglass.body import Body
 from sandglass.progress import shown
-from sandglass.quantity import path_text, quantity_text
 from sandglass.record import Record, record_of
 from sandglass.solution import Solution
 
