@@ -5,30 +5,20 @@
 
 #include "app/bench_table.hpp"
 #include "app/commands.hpp"
-#include "app/execution_options.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
 #include "app/scene_report.hpp"
-#include "app/workspace.hpp"
-#include "assembly/method_entry.hpp"
-#include "base/error.hpp"
-#include "base/names.hpp"
-#include "benchmark/bench.hpp"
 #include "benchmark/bench_json.hpp"
-#include "benchmark/rest.hpp"
-#include "benchmark/side_by_side.hpp"
-#include "benchmark/stepped_model.hpp"
-#include "comparison/comparison.hpp"
+#include "commands/bench.hpp"
+#include "commands/execution_options.hpp"
+#include "commands/workspace.hpp"
 #include "device/opencl_processor.hpp"
-#include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
 
 namespace sandglass {
 
 namespace {
-
-constexpr int most_elements = 100'000'000;
 
 struct BenchOptions {
   std::vector<std::string> names;
@@ -44,77 +34,28 @@ struct BenchOptions {
   std::string device = "cpu";
 };
 
-template <class Value>
-std::vector<Value> without_repeats(const std::vector<Value>& values) {
-  std::vector<Value> kept;
-  for (const auto& value : values) {
-    if (std::find(kept.begin(), kept.end(), value) == kept.end()) kept.push_back(value);
-  }
-  return kept;
-}
-
+/// The plan without its defaults, which depend on what is timed.
 BenchPlan make_plan(const BenchOptions& options) {
-  BenchPlan plan;
-  for (const auto& name : options.methods) method_named(name, "--methods");
-  plan.methods = options.methods.empty() ? method_names() : without_repeats(options.methods);
+  BenchPlan plan{.methods = options.methods, .threads = options.threads};
   for (const auto& precision : options.precisions) plan.precisions.push_back(parse_precision(precision));
-  plan.precisions = without_repeats(plan.precisions);
   for (const int threads : options.threads) require_threads(threads);
-  plan.threads = without_repeats(options.threads);
-  if (plan.threads.empty()) plan.threads = available_processors() > 1 ? std::vector{1, 2} : std::vector{1};
   require_count("--repetitions", options.repetitions, 1'000'000);
   plan.settings.repetitions = options.repetitions;
   plan.processor = processor_named(options.device);
   return plan;
 }
 
-/// The source of a scene. Scenes are made one after another, because large ones fill the memory.
-struct Subject {
-  std::optional<Case> description;  ///< none for a box
-  int elements = 0;
-  Shapes shapes = Shapes::any;  ///< of a box
-};
-
-std::vector<Subject> find_subjects(const BenchOptions& options) {
-  std::vector<Subject> subjects;
-  for (const auto& name : options.names) subjects.push_back({find_case(name)});
-  for (const int elements : options.elements) {
-    require_count("--elements", elements, most_elements);
-    subjects.push_back({{}, elements});
-  }
-  for (const int cubes : options.cubes) {
-    require_count("--cubes", cubes, most_elements);
-    subjects.push_back({{}, cubes, Shapes::parallelepipeds});
-  }
-  if (subjects.empty()) subjects.push_back({find_case("ellipsoid-indentation")});
-  return subjects;
-}
-
 int run_bench(const BenchOptions& options) {
-  const BenchPlan plan = make_plan(options);
-  const auto subjects = find_subjects(options);
+  const BenchPlan plan = completed(make_plan(options));
+  const auto subjects = bench_subjects(options.names, options.elements, options.cubes);
   watch_for_interrupt();
   MachineSpeed machine;
-  std::vector<BenchRecord> records;
-  for (std::size_t n = 0; n < subjects.size(); ++n) {
-    const Subject& subject = subjects[n];
-    const Scene scene = subject.description ? understood_scene(*subject.description)
-                                            : box_scene(subject.elements, subject.shapes);
-    std::vector<BenchRecord> found;
-    {
-      Progress progress("bench");
-      const auto proceed = [&](double share) {
-        progress.show((static_cast<double>(n) + share) / static_cast<double>(subjects.size()),
-                      fmt::format("{}, {} elements", scene.settings.name, scene.mesh.cells.size()));
-        return !interrupted();
-      };
-      OwnMotions motions;  // boxes have none
-      if (subject.description) motions = follow_own_motions(scene, plan.methods, proceed);
-      found = bench(scene, motions, plan, machine, proceed);
-    }
-    fmt::print("{}\n", bench_table(found));
-    records.insert(records.end(), found.begin(), found.end());
-  }
+  Progress progress("bench");
+  const auto records = bench_all(subjects, plan, machine, understood_scene, shown_on(progress),
+                                 [&](const std::vector<BenchRecord>& found) {
+                                   progress.hide();
+                                   fmt::print("{}\n", bench_table(found));
+                                 });
   fmt::print("{}", machine_lines(plan, machine));
   fmt::print(stderr, "{}", spread_warning(records));
   if (!options.json.empty()) {
@@ -123,91 +64,36 @@ int run_bench(const BenchOptions& options) {
   return std::none_of(records.begin(), records.end(), is_wrong) ? 0 : 1;
 }
 
-/// Packs only, by default on one thread.
-std::vector<MethodChoice> packed_variants(BenchOptions options) {
-  if (options.threads.empty()) options.threads = {1};
-  auto variants = variants_of(make_plan(options));
-  std::erase_if(variants, [](const MethodChoice& choice) { return choice.kernel == KernelWidth::scalar; });
-  return variants;
-}
-
-/// The variants that --rest times: packs only; by default one thread, one method with one point and one with
-/// eight.
-std::vector<MethodChoice> rest_variants(BenchOptions options) {
-  if (options.methods.empty()) options.methods = {"tl-perturbation", std::string(golden_method)};
-  return packed_variants(std::move(options));
-}
-
 int run_rest(const BenchOptions& options) {
-  const auto variants = rest_variants(options);
-  auto scenes = read_scenes(
-      options.names, [](const Case& description) { return description.quasi_static; },
-      "static equilibrium to time");
-  if (options.names.empty()) {  // small cases with published values test accuracy, not time
-    std::erase_if(scenes,
-                  [](const Scene& scene) { return !read_comparison(scene.settings).published.empty(); });
-  }
+  const BenchPlan plan = make_plan(options);
+  std::vector<Scene> scenes;
+  for (Case& description : cases_for_rest(options.names))
+    scenes.push_back(understood_scene(std::move(description)));
   watch_for_interrupt();
-  std::vector<RestRecord> records;
-  for (const auto& scene : scenes) {
-    std::vector<RestRecord> found;
-    {
-      Progress progress("bench");
-      for (const auto& choice : variants) {
-        found.push_back(time_to_rest(scene, choice, [&](double share) {
-          const auto done = static_cast<double>(records.size() + found.size()) + share;
-          progress.show(done / static_cast<double>(scenes.size() * variants.size()),
-                        fmt::format("{}, {}", scene.settings.name, choice.method));
-          return !interrupted();
-        }));
-      }
-    }
-    fmt::print("{}\n", rest_table(scene, found));
-    records.insert(records.end(), found.begin(), found.end());
-  }
+  Progress progress("bench");
+  const auto records = rest_all(scenes, plan, shown_on(progress),
+                                [&](const Scene& scene, const std::vector<RestRecord>& found) {
+                                  progress.hide();
+                                  fmt::print("{}\n", rest_table(scene, found));
+                                });
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), records));
-  const auto failed = std::count_if(records.begin(), records.end(), [](const auto& r) { return !r.times; });
-  if (failed > 0)
-    throw ComputationError(
-        fmt::format("bench: {} of {} found no static equilibrium", failed, records.size()));
+  require_at_rest(records);
   return 0;
-}
-
-/// The default methods of --bodies: all that compute bodies side by side.
-std::vector<MethodChoice> variants_of_bodies(BenchOptions options) {
-  if (options.methods.empty()) {
-    for (const MethodEntry& method : methods()) {
-      if (method.packed_double.assemble_batch != nullptr) options.methods.emplace_back(method.name);
-    }
-  }
-  return packed_variants(std::move(options));
 }
 
 int run_bodies(const BenchOptions& options) {
   require_count("--bodies", options.bodies, 1'000'000);
-  const auto variants = variants_of_bodies(options);
+  const BenchPlan plan = make_plan(options);
+  std::vector<Case> cases;
+  for (const auto& name : options.names) cases.push_back(find_case(name));
+  if (cases.empty()) cases.push_back(find_case("column"));
   watch_for_interrupt();
-  std::vector<SideBySide> records;
-  const std::vector<std::string> names =
-      options.names.empty() ? std::vector<std::string>{"column"} : options.names;
-  for (const auto& name : names) {
-    const Case description = find_case(name);
-    std::vector<SideBySide> found;
-    {
-      Progress progress("bench");
-      for (const auto& choice : variants) {
-        const auto proceed = [&](double share) {
-          progress.show((static_cast<double>(found.size()) + share) / static_cast<double>(variants.size()),
-                        fmt::format("{}, {}", description.name, choice.method));
-          return !interrupted();
-        };
-        found.push_back(time_side_by_side(description, choice, static_cast<std::size_t>(options.bodies),
-                                          options.repetitions, proceed));
-      }
-    }
-    fmt::print("{}\n", side_by_side_table(found));
-    records.insert(records.end(), found.begin(), found.end());
-  }
+  Progress progress("bench");
+  const auto records =
+      bodies_all(cases, options.bodies, plan, shown_on(progress), [&](const std::vector<SideBySide>& found) {
+        progress.hide();
+        fmt::print("{}\n", side_by_side_table(found));
+      });
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), records));
   return std::all_of(records.begin(), records.end(), [](const auto& r) { return r.status == "ok"; }) ? 0 : 1;
 }

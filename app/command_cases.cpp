@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
-#include "app/workspace.hpp"
+#include "commands/workspace.hpp"
 #include "io/case_file.hpp"
 
 namespace sandglass {

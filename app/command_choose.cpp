@@ -1,18 +1,17 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <memory>
 
 #include "app/choose_table.hpp"
 #include "app/commands.hpp"
-#include "app/execution_options.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
 #include "app/scene_report.hpp"
-#include "app/workspace.hpp"
 #include "base/error.hpp"
 #include "choice/case_writer.hpp"
 #include "choice/choose_json.hpp"
+#include "commands/execution_options.hpp"
+#include "commands/workspace.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
@@ -35,18 +34,6 @@ struct ChooseOptions {
   std::string json;
 };
 
-/// The value of --budget in seconds.
-double parse_budget(const std::string& text) {
-  if (const auto quantity = parse_quantity(text)) {
-    for (const auto& [unit, seconds] : {std::pair{"", 1.0}, {"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}) {
-      if (quantity->unit == unit) return quantity->value * seconds;
-    }
-  }
-  throw InputError(fmt::format(
-      "--budget = '{}' must be a positive time in s, ms or us, such as 1ms; without a unit it is in s{}",
-      text, decimal_comma_hint(text)));
-}
-
 void write_chosen(const Case& description, const Choice& choice, const std::string& output) {
   const Candidate& candidate = choice.attempts[*choice.chosen].candidate;
   write_text_file(output,
@@ -62,7 +49,7 @@ int run_choose(const ChooseOptions& options) {
                 .methods = options.methods,
                 .threads = options.threads,
                 .all = options.all};
-  if (!options.budget.empty()) demand.budget = parse_budget(options.budget);
+  if (!options.budget.empty()) demand.budget = parse_time("--budget", options.budget);
   require_threads(options.threads);
   const CaseOnMesh problem = with_mesh(find_case(options.name));
   const Scene scene = make_scene(problem);
@@ -75,10 +62,7 @@ int run_choose(const ChooseOptions& options) {
   std::optional<Choice> choice;
   {
     Progress progress("choose");
-    choice = choose(problem, demand, [&](double share, const std::string& remark) {
-      progress.show(share, remark);
-      return !interrupted();
-    });
+    choice = choose(problem, demand, shown_on(progress));
   }
   fmt::print("{}", choose_table(scene, *choice));
   if (!choice->chosen) {

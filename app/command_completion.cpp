@@ -6,8 +6,8 @@
 
 #include "app/commands.hpp"
 #include "app/usage.hpp"
-#include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
+#include "commands/workspace.hpp"
 
 namespace sandglass {
 

@@ -7,22 +7,17 @@
 
 #include "app/accuracy_text.hpp"
 #include "app/commands.hpp"
-#include "app/execution_options.hpp"
-#include "app/foreign_files.hpp"
 #include "app/machine.hpp"
 #include "app/scene_report.hpp"
-#include "app/workspace.hpp"
-#include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "base/names.hpp"
-#include "comparison/answer.hpp"
-#include "comparison/comparison.hpp"
-#include "comparison/verdict.hpp"
+#include "commands/execution_options.hpp"
+#include "commands/foreign_files.hpp"
+#include "commands/score.hpp"
+#include "commands/workspace.hpp"
 #include "comparison/verdict_json.hpp"
-#include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
-#include "solve/body.hpp"
 
 namespace sandglass {
 
@@ -59,47 +54,6 @@ Limit parse_limit(const std::string& text) {
         fmt::format("--limit '{}' needs a value, such as {}=2% or {}=0.02", text, figure, figure));
   }
   return {figure, parse_share(fmt::format("--limit {}", figure).c_str(), text.substr(end + 1))};
-}
-
-/// The answer of the mean-dilatation element, for cases without a stored golden. Throws ComputationError if
-/// there is none.
-Displacements mean_dilatation_answer(const Scene& scene) {
-  Observer silent;
-  Answer answer = compute_answer(scene, {.method = std::string(golden_method)}, silent);
-  if (answer.refused || answer.failure) {
-    throw ComputationError(fmt::format("{}: {} found no answer to compare with: {}", scene.settings.name,
-                                       golden_method, answer.status));
-  }
-  return std::move(answer.u);
-}
-
-/// The verdict that displacements allow. Without energies, locking is never found.
-Finding finding_of(const Scene& scene, const References& references, const Displacements& u) {
-  const double unit = displacement_unit(scene, *references.golden);
-  Symptoms found = symptoms(scene, u, 0.0, *references.golden, unit);
-  found.stiffness_ratio = 1.0;
-  return judge(found, golden_to_truth(scene, references));
-}
-
-Verdict score(const Scene& scene, const ScoreOptions& options) {
-  const References references = read_references(scene);
-  const Displacements answer{read_foreign_displacement(options.file, scene, options.matching)};
-  Verdict verdict{
-      .case_name = scene.settings.name,
-      .method = options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name,
-      .precision = "double",
-      .status = "ok",
-      .golden = accuracy_of(scene, references.comparison, answer, references.golden),
-      .truth = accuracy_of(scene, references.comparison, answer, references.truth),
-      .family = scene.settings.family,
-      .variants = scene.settings.variants};
-  if (references.golden) {
-    verdict.finding = finding_of(scene, references, answer);
-  } else {
-    verdict.mean_dilatation =
-        accuracy_of(scene, references.comparison, answer, mean_dilatation_answer(scene));
-  }
-  return verdict;
 }
 
 void print(const Verdict& verdict) {
@@ -149,15 +103,15 @@ int run(const ScoreOptions& options) {
   }
   if (options.name.find('/') != std::string::npos) throw InputError("--name must have no '/'");
   const Scene scene = understood_scene(find_case(options.case_name));
-  if (!scene.settings.quasi_static) {
-    throw InputError(fmt::format("{}: a dynamic case has no answer to score", scene.settings.file.string()));
-  }
+  require_scorable(scene);
   if (!options.json.empty()) {
     auto inputs = scene.settings.files;
     inputs.emplace_back(options.file);
     require_place(options.json, inputs);
   }
-  const Verdict verdict = score(scene, options);
+  const NodalField u = read_foreign_displacement(options.file, scene, options.matching);
+  const Verdict verdict = score(
+      scene, u, options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name);
   print(verdict);
   const bool holds = check(limits, verdict, options.against);
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), {verdict}, {}));

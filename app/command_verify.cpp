@@ -1,31 +1,23 @@
 #include <fmt/format.h>
 
-#include <deque>
-#include <filesystem>
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <utility>
 
 #include "app/accuracy_text.hpp"
 #include "app/commands.hpp"
-#include "app/execution_options.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
-#include "app/step_costs.hpp"
-#include "app/task_pool.hpp"
-#include "app/workspace.hpp"
-#include "assembly/method_entry.hpp"
-#include "assembly/processor.hpp"
-#include "base/error.hpp"
+#include "app/scene_report.hpp"
+#include "commands/execution_options.hpp"
+#include "commands/verify.hpp"
+#include "commands/workspace.hpp"
 #include "comparison/published_table.hpp"
-#include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
 #include "device/opencl_processor.hpp"
-#include "io/case_file.hpp"
 #include "io/new_file.hpp"
-#include "io/result_file.hpp"
 #include "io/text_file.hpp"
-#include "solve/frame.hpp"
 
 namespace sandglass {
 
@@ -40,104 +32,6 @@ struct VerifyOptions {
   int threads = 0;
   bool no_costs = false;
 };
-
-/// A scene and its references.
-struct Subject {
-  Scene scene;
-  References references;
-};
-
-/// One run.
-struct Task {
-  const Subject* subject;
-  MethodChoice choice;
-};
-
-std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
-  std::deque<Subject> subjects;  // a deque, because tasks point into it
-  const auto comparable = [](const Case& description) {
-    if (description.quasi_static) return true;
-    const Comparison comparison = read_comparison(description);
-    return std::filesystem::exists(comparison.golden) || !comparison.published.empty();
-  };
-  for (auto& scene : read_scenes(names, comparable, "golden or published value to be compared with")) {
-    References references = read_references(scene);
-    subjects.push_back({std::move(scene), std::move(references)});
-  }
-  return subjects;
-}
-
-/// The limits of a case for methods that are computed here: a device may refuse some.
-std::vector<Expectation> checked_limits(const Subject& subject, const std::vector<Task>& tasks) {
-  std::vector<Expectation> checked = subject.references.comparison.expectations;
-  std::erase_if(checked, [&](const Expectation& expectation) {
-    return std::ranges::none_of(tasks, [&](const Task& task) {
-      return task.subject == &subject && task.choice.method == expectation.method;
-    });
-  });
-  return checked;
-}
-
-/// Every method on every scene, methods with a kappa at `auto` and along the case's kappa curve.
-std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision precision,
-                             const std::shared_ptr<const Processor>& processor) {
-  std::vector<Task> tasks;
-  for (const auto& subject : subjects) {
-    for (const MethodEntry& method : methods()) {
-      if (method.is_condensed && !subject.scene.settings.quasi_static) continue;  // it has no motion
-      MethodChoice choice{.method = std::string(method.name), .precision = precision, .processor = processor};
-      if (processor && !processor->refusal(subject.scene.materials, choice).empty()) continue;
-      tasks.push_back({&subject, choice});
-      // A condensed method has the curve of the method that it condenses.
-      if (!method.kappa_affects_equilibrium || method.is_condensed) continue;
-      for (const double kappa : subject.references.comparison.kappas) {
-        choice.kappa = kappa;
-        tasks.push_back({&subject, choice});
-      }
-    }
-  }
-  return tasks;
-}
-
-/// The final state of a run as a result file, for pictures.
-void write_result(const Task& task, const Displacements& u, const std::string& folder) {
-  const Model model(task.subject->scene, task.choice);
-  const std::string kappa = task.choice.kappa ? fmt::format(".{}", *task.choice.kappa) : "";
-  const auto path = std::filesystem::path(folder) /
-                    fmt::format("{}.{}{}.h5", task.subject->scene.settings.name, task.choice.method, kappa);
-  ResultWriter writer(model, path, build_provenance());
-  writer.frame(static_frame(model, 0.0, NodalField(u.back().size())));
-  writer.frame(static_frame(model, 1.0, u.back()));
-  writer.commit("complete");
-}
-
-/// The results of the tasks, in their order.
-struct Outcome {
-  std::vector<Verdict> verdicts;
-  std::vector<Displacements> answers;  // empty if there is none
-};
-
-/// Runs all tasks on a few threads. Runs are independent and deterministic; only their order in time is not.
-Outcome run_all(const std::vector<Task>& tasks, const VerifyOptions& options) {
-  Outcome outcome{std::vector<Verdict>(tasks.size()), std::vector<Displacements>(tasks.size())};
-  const bool complete = run_tasks("verify", tasks.size(), options.threads, [&](std::size_t n) {
-    outcome.verdicts[n] = run_and_compare(tasks[n].subject->scene, tasks[n].subject->references,
-                                          tasks[n].choice, outcome.answers[n]);
-  });
-  if (!complete) throw ComputationError("verify: interrupted; nothing was written");
-  return outcome;
-}
-
-/// Measures the cost of steps, except in the cases with published values.
-void add_step_costs(const std::vector<Task>& tasks, Outcome& outcome, int threads) {
-  std::vector<VerifiedRun> runs;
-  for (std::size_t n = 0; n < tasks.size(); ++n) {
-    const auto& [subject, choice] = tasks[n];
-    if (!outcome.verdicts[n].published.empty()) continue;
-    runs.push_back({&subject->scene, choice, &outcome.answers[n], &outcome.verdicts[n]});
-  }
-  add_step_costs(runs, threads);
-}
 
 /// Whether `a` is closer to its reference than `b`; the reference is the golden if there is one.
 bool nearer(const Verdict& a, const Verdict& b) {
@@ -231,34 +125,31 @@ void print_limits(const std::vector<LimitCheck>& limits) {
   }
 }
 
-int verify(const VerifyOptions& options) {
-  const Precision precision = parse_precision(options.precision);
+int run_verify(const VerifyOptions& options) {
+  const VerifyPlan plan{parse_precision(options.precision), options.threads, !options.no_costs,
+                        processor_named(options.device)};
   watch_for_interrupt();
-  const auto subjects = read_subjects(options.names);
-  for (const auto& subject : subjects) {
-    if (!options.json.empty()) require_place(options.json, subject.scene.settings.files);
+  std::vector<Scene> scenes;
+  for (Case& description : named_cases(options.names, comparable, "golden or published value to be compared with")) {
+    if (!options.json.empty()) require_place(options.json, description.files);
+    scenes.push_back(understood_scene(std::move(description)));
   }
   if (!options.results.empty()) make_folder(options.results);
-  const auto tasks = make_tasks(subjects, precision, processor_named(options.device));
-  Outcome outcome = run_all(tasks, options);
-  if (!options.no_costs && options.device == "cpu") add_step_costs(tasks, outcome, options.threads);
-  const auto& [verdicts, answers] = outcome;
-  std::vector<LimitCheck> limits;
-  for (const auto& subject : subjects) {
-    if (precision != Precision::double_precision) break;
-    const auto checks = check_limits(subject.scene.settings.name, checked_limits(subject, tasks), verdicts);
-    limits.insert(limits.end(), checks.begin(), checks.end());
+  std::optional<Verification> found;
+  {
+    Progress progress("verify");
+    found = verify(std::move(scenes), plan, shown_on(progress));
   }
-  print_verdicts(verdicts);
-  fmt::print("{}", published_tables(verdicts));
+  const auto& limits = found->limits;
+  print_verdicts(found->verdicts);
+  fmt::print("{}", published_tables(found->verdicts));
   print_limits(limits);
-  if (precision != Precision::double_precision) {
+  if (plan.precision != Precision::double_precision) {
     fmt::print("\nthe cases' limits are for double precision; none was checked in {}\n", options.precision);
   }
-  if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), verdicts, limits));
-  for (std::size_t n = 0; n < tasks.size() && !options.results.empty(); ++n) {
-    if (!answers[n].empty()) write_result(tasks[n], answers[n], options.results);
-  }
+  const Provenance provenance = build_provenance();
+  if (!options.json.empty()) write_text_file(options.json, to_json(provenance, found->verdicts, limits));
+  if (!options.results.empty()) write_results(*found, options.results, provenance);
   return std::all_of(limits.begin(), limits.end(), [](const auto& check) { return check.holds; }) ? 0 : 1;
 }
 
@@ -280,7 +171,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   command->add_option("-j,--threads", options->threads, "runs at the same time; 0: one per processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  command->callback([options, &exit_code] { exit_code = verify(*options); });
+  command->callback([options, &exit_code] { exit_code = run_verify(*options); });
 }
 
 }  // namespace sandglass

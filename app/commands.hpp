@@ -22,4 +22,13 @@ void add_completion_command(CLI::App& app);
 void add_manual_command(CLI::App& app);
 void add_bench_command(CLI::App& app, int& exit_code);
 
+/// The option for the processor, see `processor_named`.
+inline CLI::Option* add_device_option(CLI::App& command, std::string& device) {
+  return command
+      .add_option("--device", device,
+                  "processor that computes the forces of elements: 'cpu', 'opencl' for the first device of "
+                  "OpenCL, a graphics card if there is one, or 'opencl:2' for the second")
+      ->capture_default_str();
+}
+
 }  // namespace sandglass

@@ -23,6 +23,10 @@ void note_interrupt(int signal) {
 Progress::Progress(std::string title) : title_(std::move(title)), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
+  hide();
+}
+
+void Progress::hide() {
   if (terminal_ && drawn_) fmt::print(stderr, "\r\x1b[K");
 }
 
@@ -42,6 +46,13 @@ void Progress::show(double share, const std::string& remark) {
   fmt::print(stderr, "\r\x1b[K{} [{:=<{}}{:<{}}] {:3.0f} % {}", title_, "", full, "", width - full,
              100.0 * share, remark);
   std::fflush(stderr);
+}
+
+ProgressOf shown_on(Progress& progress) {
+  return [&progress](double share, const std::string& remark) {
+    progress.show(share, remark);
+    return !interrupted();
+  };
 }
 
 void watch_for_interrupt() {

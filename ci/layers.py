@@ -11,7 +11,7 @@ import sys
 TARGETS = {
     "solver": "base math material mesh forces element written assembly multigrid problem io solve"
     " sandglass",
-    "suite": "counting comparison benchmark choice stability",
+    "suite": "counting comparison benchmark choice stability commands",
     "app": "app",
 }
 TARGETS = {target: layers.split() for target, layers in TARGETS.items()}

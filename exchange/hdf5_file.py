@@ -32,7 +32,7 @@ def write_mesh(path, mesh):
 
 
 def read_problem(path):
-    """The Problem of a file written by app/deck_file.cpp."""
+    """The Problem of a file written by suite/commands/deck_file.cpp."""
     mesh = read_mesh(path)
     with h5py.File(path, "r") as file:
         attributes = {k: text_of(v) for k, v in file.attrs.items()}

@@ -2,9 +2,12 @@
 
 #include <pybind11/stl/filesystem.h>
 
-#include <chrono>
-#include <exception>
+#include <variant>
 
+#include "arguments.hpp"
+#include "commands/execution_options.hpp"
+#include "comparison/comparison.hpp"
+#include "comparison/truth_estimate.hpp"
 #include "copied.hpp"
 #include "derivatives.hpp"
 #include "io/case_file.hpp"
@@ -16,13 +19,13 @@
 #include "solve/central_difference.hpp"
 #include "solve/error_estimate.hpp"
 #include "solve/relaxation.hpp"
+#include "solve/sleep.hpp"
+#include "watch.hpp"
 
 namespace py = pybind11;
 
 namespace sandglass {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 py::dict sets_of(const std::map<std::string, std::vector<int>>& sets) {
   py::dict arrays;
@@ -36,62 +39,57 @@ py::tuple tuple_of(const MeshWithSets& found) {
                         sets_of(found.sets), sets_of(found.element_sets));
 }
 
-/// Keeps frames and history, reports progress to Python, and ends the run on Ctrl-C. The GIL is free
-/// meanwhile.
+/// Keeps frames and history.
 class Recorder final : public Observer {
  public:
-  explicit Recorder(const py::object& progress) : progress_(progress) {}
+  explicit Recorder(Watch& watch) : watch_(watch) {}
 
   void frame(const Frame& frame) override { frames.push_back(frame); }
   void history(const HistoryRow& row) override { rows.push_back(row); }
-
-  bool proceed(long /*step*/, double share, double /*residual*/) override {
-    constexpr std::chrono::milliseconds often(50);
-    if (const auto now = Clock::now(); !error_ && now - last_ >= often) {
-      last_ = now;
-      const py::gil_scoped_acquire python;
-      try {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (!progress_.is_none()) progress_(share);
-      } catch (const py::error_already_set&) {
-        error_ = std::current_exception();
-      }
-    }
-    return !error_;
-  }
-
-  /// Throws the exception that ended the run, if one did.
-  void require_uninterrupted() const {
-    if (error_) std::rethrow_exception(error_);
-  }
+  bool proceed(long /*step*/, double share, double /*residual*/) override { return watch_.proceed(share); }
 
   std::vector<Frame> frames;
   std::vector<HistoryRow> rows;
 
  private:
-  const py::object& progress_;
-  Clock::time_point last_ = Clock::now();
-  std::exception_ptr error_;
+  Watch& watch_;
 };
+
+/// How a case is solved.
+struct Solving {
+  int threads = 1;
+  std::optional<double> sleep = {};     ///< leave out elements that move by less than this share
+  std::optional<double> accuracy = {};  ///< refine the mesh until the truth is this near
+};
+
+Solving solving(const Arguments& given) {
+  const auto share = [&](const char* name) -> std::optional<double> {
+    const auto text = given.optional(name, &Arguments::text);
+    return text ? std::optional(parse_share(name, *text)) : std::nullopt;
+  };
+  Solving how{given.integer("threads"), share("sleep"), share("accuracy")};
+  require_count("threads", how.threads, 1024);
+  if (how.sleep && how.accuracy)
+    throw InputError("against: a refined mesh is computed as a whole; leave out sleep");
+  return how;
+}
 
 /// A case that was solved: immutable.
 class Answer : public NeverUnmade {
  public:
   /// Throws InputError and ComputationError as `sandglass run` does.
-  Answer(const std::string& case_text, MeshArrays mesh, int threads, const py::object& progress)
-      : scene_(read_scene(case_text, checked(std::move(mesh)))), model_(scene_, choice(threads)) {
-    Recorder recorder(progress);
-    std::exception_ptr failure;
-    {
-      const py::gil_scoped_release others;
-      try {
-        scene_.settings.quasi_static ? find_rest(recorder) : find_motion(recorder);
-      } catch (...) {
-        failure = std::current_exception();
-      }
-    }
-    recorder.require_uninterrupted();
-    if (failure) std::rethrow_exception(failure);
+  Answer(const std::string& case_text, MeshArrays mesh, const Solving& how, Watch& watch)
+      : problem_(with_mesh(case_text, checked(std::move(mesh)))), scene_(make_scene(problem_)) {
+    choice_ = method_of(scene_.settings);
+    choice_.threads = how.threads;
+    if (how.accuracy && !scene_.settings.method) choice_.method = golden_method;
+    require_static(how);
+    Recorder recorder(watch);
+    summary_ = watch.run([&] {
+      if (how.accuracy) refine(*how.accuracy);
+      model_ = std::make_unique<Model>(scene_, choice_);
+      return scene_.settings.quasi_static ? find_rest(recorder, how) : find_motion(recorder);
+    });
     frames_ = std::move(recorder.frames);
     rows_ = std::move(recorder.rows);
   }
@@ -144,73 +142,98 @@ class Answer : public NeverUnmade {
 
   py::dict summary() const {
     require_made("Answer");
-    return summary_;
+    py::dict named;
+    for (const auto& [name, value] : summary_) std::visit([&](const auto& v) { named[name] = v; }, value);
+    return named;
   }
 
-  py::tuple estimate() const {
+  /// The largest and the rms distance (m) from the mean-dilatation element's answer on this mesh, or from the
+  /// truth.
+  std::pair<double, double> estimate(const std::string& against) const {
     if (!scene().settings.quasi_static) throw InputError("estimate: errors are estimated for static answers");
-    ErrorEstimate found;
-    {
-      const py::gil_scoped_release others;
-      found = estimate_error(model_, frames_.back().u);
+    if (against != "golden" && against != "truth")
+      throw InputError("against = '" + against + "' must be 'golden' or 'truth'");
+    const py::gil_scoped_release others;
+    const NodalField& u = frames_.back().u;
+    if (against == "golden") {
+      const ErrorEstimate found = estimate_error(*model_, u);
+      return {found.largest, found.rms};
     }
-    return py::make_tuple(found.largest, found.rms);
+    const TruthEstimate found = estimate_truth_error(problem_, choice_.threads, u);
+    return {found.largest, found.rms};
   }
 
-  /// See Derivatives. Throws InputError for a motion.
+  /// See Derivatives. Throws InputError for a motion, and for an answer of the awake part.
   Derivatives& derivatives() const {
     require_made("Answer");
-    if (!derivatives_) throw InputError("derivatives: the answer is a motion; allowed: a static answer");
+    if (!scene_.settings.quasi_static)
+      throw InputError("derivatives: the answer is a motion; allowed: a static answer");
+    if (!derivatives_) throw InputError("derivatives: elements sleep; allowed: an answer without sleep");
     return *derivatives_;
   }
 
   void write(const std::filesystem::path& path, const std::string& writer) const {
     require_made("Answer");
-    ResultWriter result(model_, path, {{"written by", writer}, {"method", model_.choice().method}});
+    ResultWriter result(*model_, path, {{"written by", writer}, {"method", choice_.method}});
     for (const Frame& frame : frames_) result.frame(frame);
     for (const HistoryRow& row : rows_) result.history(row);
     result.commit("complete");
   }
 
  private:
-  MethodChoice choice(int threads) const {
-    require_threads(threads);
-    MethodChoice found = method_of(scene_.settings);
-    found.threads = threads;
-    return found;
+  using Summary = std::vector<std::pair<const char*, std::variant<double, long, std::string>>>;
+
+  void require_static(const Solving& how) const {
+    if (scene_.settings.quasi_static) return;
+    if (how.sleep) throw InputError("sleep: elements sleep in quasi-static cases");
+    if (how.accuracy) throw InputError("against: meshes are refined for quasi-static cases");
   }
 
-  void find_rest(Recorder& recorder) {
-    const Relaxation found = relax(model_, recorder);
-    recorder_ends(recorder);
-    if (!in_equilibrium(found)) throw ComputationError(outcome(found, model_.choice().precision));
-    derivatives_ = std::make_unique<Derivatives>(model_, found, recorder.frames.back().levels);
-    const py::gil_scoped_acquire python;
-    summary_["evaluations"] = found.steps;
-    summary_["residual"] = found.residual;
-    summary_["seconds"] = found.seconds;
-    summary_["stability"] = stability_text(found);
+  /// Takes the refined mesh.
+  void refine(double accuracy) {
+    AccurateMesh found = refine_until_within(accuracy, problem_, choice_.threads);
+    unit_ = displacement_unit(scene_, found.limit);
+    problem_ = std::move(found.problem);
+    scene_ = std::move(found.scene);
+    near_ = std::move(found.u);
+    limit_ = std::move(found.limit);
   }
 
-  void find_motion(Recorder& recorder) {
-    const Motion found = integrate(model_, recorder);
-    recorder_ends(recorder);
-    const py::gil_scoped_acquire python;
-    summary_["steps"] = found.steps;
-    summary_["smallest_step"] = found.smallest_step;
-    summary_["seconds"] = found.seconds;
+  Summary find_rest(Recorder& recorder, const Solving& how) {
+    const Relaxation found = how.sleep ? relax_awake(scene_, choice_, *how.sleep, recorder).relaxation
+                                       : relax(*model_, recorder, nullptr, near_.empty() ? nullptr : &near_);
+    require_frames(recorder);
+    if (!in_equilibrium(found)) throw ComputationError(outcome(found, choice_.precision));
+    if (!how.sleep)
+      derivatives_ = std::make_unique<Derivatives>(*model_, found, recorder.frames.back().levels);
+    Summary summary{{"evaluations", found.steps},
+                    {"residual", found.residual},
+                    {"seconds", found.seconds},
+                    {"stability", stability_text(found)}};
+    if (!limit_.empty()) summary.emplace_back("error", largest_distance(limit_, found.u) / unit_);
+    return summary;
   }
 
-  static void recorder_ends(const Recorder& recorder) {
+  Summary find_motion(Recorder& recorder) {
+    const Motion found = integrate(*model_, recorder);
+    require_frames(recorder);
+    return {{"steps", found.steps}, {"smallest_step", found.smallest_step}, {"seconds", found.seconds}};
+  }
+
+  static void require_frames(const Recorder& recorder) {
     if (recorder.frames.empty()) throw ComputationError("the run ended before its first frame");
   }
 
-  const Scene scene_;
-  const Model model_;
+  CaseOnMesh problem_;  // that of the refined mesh, if it was refined
+  Scene scene_;
+  MethodChoice choice_;
+  NodalField near_, limit_;  // m; of a refined mesh: an answer near by, and the truth at the original nodes
+  double unit_ = 0.0;        // m, of errors
+  std::unique_ptr<const Model> model_;
   std::vector<Frame> frames_;
   std::vector<HistoryRow> rows_;
-  std::unique_ptr<Derivatives> derivatives_;  // of a static answer
-  py::dict summary_;
+  std::unique_ptr<Derivatives> derivatives_;  // of a static answer of the whole body
+  Summary summary_;
 };
 
 /// A declaration as a dict of its members.
@@ -227,11 +250,6 @@ py::dict described(const CaseTable& table) {
 }
 
 }  // namespace
-
-void require_threads(int threads) {
-  if (threads < 1 || threads > 1024)
-    throw InputError("threads = " + std::to_string(threads) + " must be in [1, 1024]");
-}
 
 void add_answers(py::module_& m) {
   using namespace pybind11::literals;
@@ -260,8 +278,8 @@ void add_answers(py::module_& m) {
       .def("frame", &Answer::frame, "number"_a, "The arrays of a frame.")
       .def("history", &Answer::history, "The columns of the history.")
       .def("summary", &Answer::summary, "How it was found.")
-      .def("estimate", &Answer::estimate,
-           "The largest and the rms distance from the mean-dilatation answer, m.")
+      .def("estimate", &Answer::estimate, "against"_a,
+           "The largest and the rms distance from the mean-dilatation answer or from the truth, m.")
       .def(
           "gradient",
           [](const Answer& answer, const py::object& displacements,
@@ -295,13 +313,14 @@ void add_answers(py::module_& m) {
   m.def(
       "solve",
       [](const py::object& points, const py::object& cells, const std::map<std::string, py::object>& sets,
-         const std::map<std::string, py::object>& element_sets, const std::string& case_text, int threads,
-         const py::object& progress) {
-        return std::make_unique<Answer>(case_text, mesh_arrays(points, cells, sets, element_sets), threads,
-                                        progress);
+         const std::map<std::string, py::object>& element_sets, const std::string& case_text,
+         const py::dict& arguments, const py::object& progress) {
+        Watch watch(progress);
+        return std::make_unique<Answer>(case_text, mesh_arrays(points, cells, sets, element_sets),
+                                        solving(Arguments(arguments)), watch);
       },
-      "points"_a, "cells"_a, "sets"_a, "element_sets"_a, "case_text"_a, "threads"_a = 1,
-      "progress"_a = py::none(), "Solves a case.");
+      "points"_a, "cells"_a, "sets"_a, "element_sets"_a, "case_text"_a, "arguments"_a, "progress"_a,
+      "Solves a case.");
 }
 
 }  // namespace sandglass

@@ -45,7 +45,4 @@ MeshArrays mesh_arrays(const pybind11::object& points, const pybind11::object& c
                        const std::map<std::string, pybind11::object>& sets,
                        const std::map<std::string, pybind11::object>& element_sets);
 
-/// Throws InputError for a number of threads that must be a mistake.
-void require_threads(int threads);
-
 }  // namespace sandglass

@@ -15,7 +15,12 @@ namespace py = pybind11;
 namespace sandglass {
 namespace {
 
-/// A field on `nodes` nodes from an array of Python; empty if it is None. Throws InputError that names it.
+void require_finite(const char* argument, const std::string& name, double value) {
+  if (!std::isfinite(value)) throw InputError(fmt::format("{}: '{}' must be finite", argument, name));
+}
+
+}  // namespace
+
 NodalField nodal_field(const char* name, const py::object& given, std::size_t nodes) {
   if (given.is_none()) return {};
   using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -37,12 +42,6 @@ NodalField nodal_field(const char* name, const py::object& given, std::size_t no
   std::copy(first, first + 3 * nodes, field.data()->data());
   return field;
 }
-
-void require_finite(const char* argument, const std::string& name, double value) {
-  if (!std::isfinite(value)) throw InputError(fmt::format("{}: '{}' must be finite", argument, name));
-}
-
-}  // namespace
 
 template <class Use>
 auto Derivatives::with_tangent(const Use& use) {

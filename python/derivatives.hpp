@@ -13,6 +13,10 @@
 
 namespace sandglass {
 
+/// A field on `nodes` nodes from an array of Python; empty if it is None. Throws TypeError and InputError
+/// that name it.
+NodalField nodal_field(const char* name, const pybind11::object& given, std::size_t nodes);
+
 /// The derivatives of a static answer, in arrays of Python. The tangent is made when it is first needed; it
 /// serves one thread at a time, and the GIL is free meanwhile.
 class Derivatives {

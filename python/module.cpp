@@ -1,10 +1,12 @@
 #include <pybind11/stl/filesystem.h>
 
-#include <atomic>
 #include <limits>
-#include <variant>
 
 #include "answer.hpp"
+#include "batches.hpp"
+#include "commands.hpp"
+#include "commands/execution_options.hpp"
+#include "either_precision.hpp"
 #include "sandglass/simulation.hpp"
 
 namespace py = pybind11;
@@ -16,48 +18,11 @@ using Vector = std::array<double, 3>;
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
-/// A simulation in either precision, used by one thread at a time.
-class AnySimulation : public NeverUnmade {
- public:
-  /// `arguments` are those of Simulation; `precision` is "double" or "float".
-  template <class... Arguments>
-  explicit AnySimulation(const std::string& precision, const Arguments&... arguments)
-      : simulation_(make(precision, arguments...)) {}
+using AnySimulation = EitherPrecision<Simulation>;
 
-  /// Returns `use(simulation)`. Throws if another thread is using the simulation.
-  template <class Use>
-  auto with(const Use& use) {
-    require_made("Simulation");
-    if (busy_.test_and_set()) throw std::runtime_error("the simulation is busy in another thread");
-    const Release release{busy_};
-    return std::visit(use, simulation_);
-  }
-
-  std::unique_ptr<AnySimulation> copy() {
-    return with([](const auto& simulation) { return std::make_unique<AnySimulation>(simulation); });
-  }
-
-  template <class Real>
-  explicit AnySimulation(const Simulation<Real>& simulation) : simulation_(simulation) {}
-
- private:
-  using Simulations = std::variant<Simulation<double>, Simulation<float>>;
-
-  struct Release {
-    std::atomic_flag& flag;
-    ~Release() { flag.clear(); }
-  };
-
-  template <class... Arguments>
-  static Simulations make(const std::string& precision, const Arguments&... arguments) {
-    if (precision == "double") return Simulation<double>(arguments...);
-    if (precision == "float") return Simulation<float>(arguments...);
-    throw InputError("precision = '" + precision + "' must be 'double' or 'float'");
-  }
-
-  Simulations simulation_;
-  std::atomic_flag busy_;
-};
+std::unique_ptr<AnySimulation> copy(AnySimulation& self) {
+  return self.with([](const auto& simulation) { return std::make_unique<AnySimulation>(simulation); });
+}
 
 py::ssize_t signed_size(std::size_t size) {
   return static_cast<py::ssize_t>(size);
@@ -177,7 +142,7 @@ void move(AnySimulation& self, const std::string& set, const Doubles& displaceme
 
 SimulationSettings settings(std::optional<std::string> method, std::optional<double> kappa,
                             std::optional<double> damping, double step_fraction, int threads) {
-  require_threads(threads);
+  require_count("threads", threads, 1024);
   return {std::move(method), kappa, damping, step_fraction, threads};
 }
 
@@ -240,6 +205,8 @@ PYBIND11_MODULE(_sandglass, m) {
   py::register_exception<ComputationError>(m, "ComputationError", PyExc_RuntimeError);
 
   add_answers(m);
+  add_commands(m);
+  add_batches(m);
 
   py::class_<AnySimulation>(m, "Simulation", about_simulation)
       .def(py::init(&of_file), "case"_a, py::kw_only(), "precision"_a = "double", "method"_a = py::none(),
@@ -284,7 +251,7 @@ PYBIND11_MODULE(_sandglass, m) {
             return view_of<int, 1>(self, [&](const auto& s) { return s.nodes(set); });
           },
           "set"_a, "The nodes of a set, sorted.")
-      .def("copy", &AnySimulation::copy, "An independent copy.")
+      .def("copy", &copy, "An independent copy.")
       .def_property_readonly(
           "displacements", &displacements,
           "Displacements (m), one row per node in the order of the time loop: node n is in row `rows[n]`, "

@@ -1,12 +1,11 @@
 """Derivatives of static answers against differences of the answers themselves."""
 
 import ast
-import re
 import zlib
 
 import numpy as np
 import pytest
-from command_line import ROOT
+from module_folder import readme_code
 
 import sandglass as sg
 
@@ -367,7 +366,7 @@ def test_an_unstable_answer_has_no_derivatives():
 
 def test_the_readme_identifies_two_moduli():
     """Exactly those with which its displacements were made: the tolerance of the search is 1e-8."""
-    code = re.findall(r"```python\n(.*?)```", (ROOT / "python/README.md").read_text(), re.DOTALL)[1]
+    code = readme_code("Derivatives")
     found = {}
     exec(compile(code, "README.md", "exec"), found)
     assert np.allclose(found["moduli"], [12e3, 30e3], rtol=1e-6)

@@ -167,6 +167,10 @@ def test_errors_are_exceptions_with_the_solvers_words(case, body):
         body.move("haed", END)
     with pytest.raises(sandglass.InputError, match="seconds = -1"):
         body.advance(-1)
+    with pytest.raises(
+        sandglass.InputError, match=r"seconds = 1e\+30 must be less than 2\^53 steps"
+    ):
+        body.advance(1e30)
     with pytest.raises(sandglass.InputError, match="no such case file"):
         sandglass.Simulation("nowhere.toml")
     with pytest.raises(sandglass.InputError, match="'half' must be 'double' or 'float'"):

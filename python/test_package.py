@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from command_line import BARE, ROOT, dynamic, sandglass as program
-from module_folder import FOLDER
+from module_folder import FOLDER, readme_code
 
 import sandglass as sg
 
@@ -232,7 +232,7 @@ def test_progress_interrupts_and_other_threads():
 def test_the_readme_leads_from_arrays_to_a_picture(tmp_path):
     """A column that bends: its picture has the colours of stresses, and is no blank page."""
     pyplot = pytest.importorskip("matplotlib.pyplot")
-    code, _ = re.findall(r"```python\n(.*?)```", (ROOT / "python/README.md").read_text(), re.DOTALL)
+    code = readme_code("Sandglass in Python")
     assert len([line for line in code.splitlines() if line]) <= 11  # with the imports
     environment = os.environ | {"PYTHONPATH": FOLDER, "MPLBACKEND": "Agg", "HOME": str(tmp_path)}
     done = subprocess.run(

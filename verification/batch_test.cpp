@@ -244,7 +244,8 @@ TEST(Batch, unsupported_features_are_refused) {
   EXPECT_NE(input_error([&] { batch.scale_stiffness(0, 0.0); }).find("factor = 0"), std::string::npos);
   EXPECT_NE(input_error([&] { Batch<double>(block(false), text_of(1.0), 0); }).find("bodies = 0"),
             std::string::npos);
-  EXPECT_NE(input_error([&] { batch.move(0, "middle", {}); }).find("no driven node"), std::string::npos);
+  EXPECT_NE(input_error([&] { batch.move(0, "middle", Vector{}); }).find("no driven node"),
+            std::string::npos);
 }
 
 }  // namespace

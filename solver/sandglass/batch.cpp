@@ -109,10 +109,10 @@ class Batch<Real>::Parts {
     choose_step();
   }
 
-  void move(std::size_t body, const std::string& set, const std::array<double, 3>& displacement) {
-    problem_.move(
-        set, [&](std::size_t /*node*/) { return displacement; },
-        [&](std::size_t k, double u) { set_lane(side(body).to[k], body, u); });
+  /// displacement(n): of the n-th node of the set, m.
+  template <class Displacement>
+  void move(std::size_t body, const std::string& set, const Displacement& displacement) {
+    problem_.move(set, displacement, [&](std::size_t k, double u) { set_lane(side(body).to[k], body, u); });
   }
 
   void impose(std::size_t body, double factor) {
@@ -293,7 +293,14 @@ void Batch<Real>::scale_stiffness(std::size_t body, double factor) {
 
 template <class Real>
 void Batch<Real>::move(std::size_t body, const std::string& set, const std::array<double, 3>& displacement) {
-  parts_->move(body, set, displacement);
+  parts_->move(body, set, [&](std::size_t /*node*/) { return displacement; });
+}
+
+template <class Real>
+void Batch<Real>::move(std::size_t body, const std::string& set,
+                       std::span<const std::array<double, 3>> displacements) {
+  parts_->problem().require_one_for_each_node(set, displacements.size());
+  parts_->move(body, set, [&](std::size_t node) { return displacements[node]; });
 }
 
 template <class Real>
@@ -318,8 +325,7 @@ double Batch<Real>::step_size() const {
 
 template <class Real>
 std::array<double, 3> Batch<Real>::displacement(std::size_t body, std::size_t node) const {
-  const std::size_t nodes = parts_->problem().scene().mesh.points.size();
-  if (node >= nodes) throw InputError(fmt::format("node = {} must be below {}", node, nodes));
+  if (node >= nodes()) throw InputError(fmt::format("node = {} must be below {}", node, nodes()));
   std::array<double, 3> u{};
   for (std::size_t i = 0; i < 3; ++i) u[i] = parts_->displacement(body, node, i);
   return u;
@@ -332,6 +338,21 @@ std::array<double, 3> Batch<Real>::reaction(std::size_t body, const std::string&
     sum[component] += parts_->reaction(body, constraint);
   }
   return sum;
+}
+
+template <class Real>
+std::size_t Batch<Real>::bodies() const {
+  return parts_->size();
+}
+
+template <class Real>
+std::size_t Batch<Real>::nodes() const {
+  return parts_->problem().scene().mesh.points.size();
+}
+
+template <class Real>
+std::span<const int> Batch<Real>::nodes(const std::string& set) const {
+  return parts_->problem().nodes(set);
 }
 
 template class Batch<double>;

@@ -35,6 +35,9 @@ class Batch {
   /// Sets the targets of a body's driven nodes in a set for the next `advance`; see Simulation::move.
   void move(std::size_t body, const std::string& set, const std::array<double, 3>& displacement);
 
+  /// The same with a displacement (m) for each node of the set, in the order of `nodes(set)`.
+  void move(std::size_t body, const std::string& set, std::span<const std::array<double, 3>> displacements);
+
   /// The same for all driven nodes and the forces of a body; see Simulation::impose.
   void impose(std::size_t body, double factor);
 
@@ -50,6 +53,14 @@ class Batch {
 
   /// See Simulation::reaction, N.
   std::array<double, 3> reaction(std::size_t body, const std::string& set) const;
+
+  std::size_t bodies() const;
+
+  /// The number of nodes of a body.
+  std::size_t nodes() const;
+
+  /// The nodes of a set. Throws InputError for an unknown set.
+  std::span<const int> nodes(const std::string& set) const;
 
  private:
   class Parts;

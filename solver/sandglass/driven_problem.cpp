@@ -60,6 +60,12 @@ const std::vector<int>& DrivenProblem::nodes(const std::string& set) const {
   return find(scene_.sets, set, "is not known");
 }
 
+void DrivenProblem::require_one_for_each_node(const std::string& set, std::size_t count) const {
+  if (count == nodes(set).size()) return;
+  throw InputError(fmt::format("set '{}': {} displacements; it must be one for each of its {} nodes", set,
+                               count, nodes(set).size()));
+}
+
 namespace {
 
 /// Sorts sets of numbers below `count`.
@@ -113,7 +119,11 @@ void require_in_range(const char* name, double value, const Range& range) {
 }
 
 double steps_in(double seconds, double step) {
-  constexpr double rounding = 1e-9;  // of a step
+  constexpr double rounding = 1e-9, most = 0x1p53;  // of a step; beyond, a step no longer changes the time
+  if (!(seconds / step < most)) {
+    throw InputError(
+        fmt::format("seconds = {} must be less than 2^53 steps, of {} s at present", seconds, step));
+  }
   return std::max(1.0, std::ceil(seconds / step - rounding));
 }
 

@@ -22,7 +22,8 @@ void require_in_range(const char* name, double value, const Range& range);
 /// element, if a node belongs to no cell or has no finite position, and if there are no nodes.
 MeshWithSets checked(MeshArrays arrays);
 
-/// The number of equal steps of at most `step` (s) in a time (s); n for a time of n times `step`.
+/// The number of equal steps of at most `step` (s) in a time (s); n for a time of n times `step`. Throws
+/// InputError for more than can be counted.
 double steps_in(double seconds, double step);
 
 /// A driven component of a set.
@@ -48,6 +49,9 @@ class DrivenProblem {
 
   /// Throws InputError for an unknown set.
   const std::vector<int>& nodes(const std::string& set) const;
+
+  /// Throws InputError unless `count` is the number of nodes of a set.
+  void require_one_for_each_node(const std::string& set, std::size_t count) const;
 
   /// Calls set(constraint, u) for the driven components of a set, with u (m) from `displacement(n)` for the
   /// n-th node of the set. First throws InputError if any number is not finite.

@@ -225,10 +225,7 @@ void Simulation<Real>::move(const std::string& set, const std::array<double, 3>&
 
 template <class Real>
 void Simulation<Real>::move(const std::string& set, std::span<const std::array<double, 3>> displacements) {
-  if (displacements.size() != nodes(set).size()) {
-    throw InputError(fmt::format("set '{}': {} displacements; it must be one for each of its {} nodes", set,
-                                 displacements.size(), nodes(set).size()));
-  }
+  parts_->problem().require_one_for_each_node(set, displacements.size());
   parts_->move(set, [&](std::size_t node) { return displacements[node]; });
 }
 

@@ -1,6 +1,11 @@
 #include "written/dialects.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "base/error.hpp"
+#include "base/names.hpp"
 
 namespace sandglass {
 
@@ -59,7 +64,11 @@ const std::vector<Dialect>& dialects() {
 }
 
 const Dialect& dialect_named(std::string_view name) {
-  return *std::ranges::find(dialects(), name, &Dialect::name);
+  const auto found = std::ranges::find(dialects(), name, &Dialect::name);
+  if (found != dialects().end()) return *found;
+  std::vector<std::string> known;
+  for (const Dialect& dialect : dialects()) known.emplace_back(dialect.name);
+  throw InputError(fmt::format("--dialect = '{}' is not known; {}", name, suggestion(name, known)));
 }
 
 }  // namespace sandglass

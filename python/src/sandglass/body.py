@@ -4,7 +4,10 @@ import os
 import tomllib
 
 import _sandglass
+from sandglass.arguments import path_text, quantity_text
+from sandglass.batch import Batch
 from sandglass.mesh import Mesh, _named, mesh_of_case
+from sandglass.progress import shown
 from sandglass.solution import Solution
 from sandglass.tables import Table, class_for, plain
 from sandglass.toml_text import toml_text
@@ -55,7 +58,7 @@ class Body:
     @classmethod
     def read(cls, file):
         """The body of a case file without [[variants]]. Raises InputError."""
-        file = os.fspath(file)
+        file = path_text("file", file)
         try:
             with open(file, "rb") as stream:
                 case = tomllib.load(stream)
@@ -92,7 +95,7 @@ class Body:
                 if name in _OTHER:
                     continue
                 if class_for(name) is None:
-                    body._extra[name] = table
+                    body._extra[name] = _references_in(name, table, folder)
                     continue
                 for each in table if isinstance(table, list) else [table]:
                     body.tables.append(class_for(name)(**each))
@@ -109,18 +112,37 @@ class Body:
             raise _sandglass.InputError(f"{file}: {error}") from None
         return body
 
-    def solve(self, *, threads=1, progress=None, **method):
+    def solve(self, *, threads=1, progress=None, sleep=None, against=None, **method):
         """The answer of the case: its static equilibrium, or its motion.
 
-        `threads` do not change the answer. `progress` is called now and then with the completed
-        share of the work. Other keywords replace those of the body's `sg.Method`: `name`, `kappa`,
-        `precision`, `accuracy`, `kappa_modulus`. Other threads run meanwhile, and Ctrl-C ends it.
-        Returns an `sg.Solution`. Raises InputError, and ComputationError if the computation fails.
+        `threads` do not change the answer. `progress=True` shows how far it is; a callable gets the
+        completed share of the work now and then. `sleep`: leave out elements that would move by
+        less than this share of the largest imposed displacement, such as 0.001 or "0.1%".
+        `against="truth"`: the mesh is refined until the mean-dilatation element's answer, the
+        default method then, is within the share `accuracy` of the exact one; `summary["error"]` of
+        the solution is the distance of the answer from it. Other keywords replace those of the
+        body's `sg.Method`: `name`, `kappa`, `precision`, `accuracy`, `kappa_modulus`. Other threads
+        run meanwhile, and Ctrl-C ends it. Returns an `sg.Solution`. Raises InputError, and
+        ComputationError if the computation fails.
         """
-        if progress is not None and not callable(progress):
-            raise TypeError(f"progress must be callable, but is a {type(progress).__name__}")
+        accuracy = None
+        if against is not None:
+            if not isinstance(against, str) or against != "truth":
+                raise _sandglass.InputError(f"against = {against!r} must be 'truth' or None")
+            accuracy = method.pop("accuracy", None)
+            if accuracy is None:
+                raise _sandglass.InputError(
+                    "against: needs the largest error allowed, such as accuracy='2%'"
+                )
+            accuracy = quantity_text("accuracy", accuracy)
+        given = {
+            "threads": threads,
+            "sleep": None if sleep is None else quantity_text("sleep", sleep),
+            "accuracy": accuracy,
+        }
         text = toml_text(self._case_tables(**method))
-        answer = _sandglass.solve(*self._mesh(), text, threads, progress)
+        with shown(progress, "solve") as callback:
+            answer = _sandglass.solve(*self._mesh(), text, given, callback)
         return Solution(answer, self.name)
 
     def simulation(self, **settings):
@@ -131,9 +153,32 @@ class Body:
             points, cells, sets, text, element_sets=element_sets, **settings
         )
 
+    def batch(
+        self,
+        bodies,
+        *,
+        precision="double",
+        method=None,
+        kappa=None,
+        damping=None,
+        step_fraction=0.9,
+        threads=1,
+    ):
+        """An `sg.Batch` of this number of bodies, which move side by side and each in its own way.
+
+        They are undeformed, at rest or with the case's initial velocities. Keywords are those of
+        `sg.Simulation`. Raises InputError for what a batch does not support: other laws than
+        isotropic elastic ones, other forces than dead ones, ties, and methods without kernels for
+        batches, whose message lists those with them.
+        """
+        given = {"bodies": bodies, "precision": precision, "method": method, "kappa": kappa}
+        given |= {"damping": damping, "step_fraction": step_fraction, "threads": threads}
+        text = toml_text(self._case_tables())
+        return Batch(_sandglass.Batch(*self._mesh(), text, given), bodies)
+
     def save(self, file):
         """Writes the case file and, unless a generator or a file makes the mesh, its .h5."""
-        file = os.fspath(file)
+        file = path_text("file", file)
         mesh_file = os.path.splitext(file)[0] + ".h5"
         if self.mesh._table is None:
             self.mesh.save(mesh_file)
@@ -190,11 +235,10 @@ class Body:
         if method:
             cls = class_for("method")
             base = found.get("method", {"name": "tl-perturbation"})
-            if (
-                method.get("name", base["name"]) != base["name"]
-            ):  # kappa and the like are the other's
+            given = cls(**({"name": base["name"]} | method))._toml()
+            if given["name"] != base["name"]:  # kappa and the like are the other's
                 base = {key: base[key] for key in base if key == "precision"}
-            found["method"] = cls(**(base | method))._toml()
+            found["method"] = {key: base[key] for key in base if key not in method} | given
         return found | self._extra
 
 
@@ -224,6 +268,14 @@ def _in_folder(table, folder):
     if "file" not in table:
         return table
     return table | {"file": os.path.join(folder, table["file"])}
+
+
+def _references_in(name, table, folder):
+    """A table of which the files of a [comparison] are relative to the current folder."""
+    if name != "comparison":
+        return table
+    files = {key: os.path.join(folder, table[key]) for key in ("golden", "truth") if key in table}
+    return table | files
 
 
 def _read_material(table, folder):

@@ -5,6 +5,7 @@ import os
 import numpy as np
 
 import _sandglass
+from sandglass.arguments import path_text, real_array
 from sandglass.tables import Table, class_for
 from sandglass.toml_text import keys_text
 
@@ -44,34 +45,32 @@ class Mesh:
 
         `spacing`: (3,), the size of a voxel in m, of an image without one. Raises InputError.
         """
-        table = {"file": os.fspath(file)}
-        if not isinstance(table["file"], str):
-            raise TypeError(f"file must be a path, but is a {type(file).__name__}")
+        table = {"file": path_text("file", file)}
         if spacing is not None:
-            table["spacing"] = np.asarray(spacing, dtype=float).tolist()
+            table["spacing"] = real_array("spacing", spacing).tolist()
         return cls._of_keys(table)
 
     @classmethod
-    def of(cls, source):
+    def of(cls, mesh):
         """A mesh of a Mesh, a generator such as `sg.Box`, a path, or an object of meshio or VTK.
 
         Raises TypeError for anything else, and InputError.
         """
-        if isinstance(source, Mesh):
-            return source
-        if isinstance(source, Table):
-            if source._declared["table"] != "mesh":
-                raise TypeError(f"mesh must be a mesh or a generator, but is a {source._name()}")
-            return cls._of_keys(source._toml())
-        if isinstance(source, (str, os.PathLike)):
-            return cls.read(source)
-        if hasattr(source, "cells_dict"):
-            return cls.of_meshio(source)
-        if hasattr(source, "GetCellTypesArray"):
-            return cls.of_vtk(source)
+        if isinstance(mesh, Mesh):
+            return mesh
+        if isinstance(mesh, Table):
+            if mesh._declared["table"] != "mesh":
+                raise TypeError(f"mesh must be a mesh or a generator, but is a {mesh._name()}")
+            return cls._of_keys(mesh._toml())
+        if isinstance(mesh, (str, os.PathLike)):
+            return cls.read(path_text("mesh", mesh))
+        if hasattr(mesh, "cells_dict"):
+            return cls.of_meshio(mesh)
+        if hasattr(mesh, "GetCellTypesArray"):
+            return cls.of_vtk(mesh)
         raise TypeError(
             "mesh must be a sg.Mesh, a generator such as sg.Box, a path, a meshio.Mesh or a "
-            f"vtkUnstructuredGrid, but is a {type(source).__name__}"
+            f"vtkUnstructuredGrid, but is a {type(mesh).__name__}"
         )
 
     @classmethod
@@ -90,6 +89,8 @@ class Mesh:
         Its point_sets and cell_sets are sets; Gmsh's physical groups too: of hexahedra sets of
         elements, and all of them sets of nodes. Raises InputError for a mesh without hexahedra.
         """
+        if not hasattr(mesh, "cells_dict"):
+            raise TypeError(f"mesh must be a meshio.Mesh, but is a {type(mesh).__name__}")
         blocks = [k for k, block in enumerate(mesh.cells) if block.type == "hexahedron"]
         if not blocks:
             found = ", ".join(sorted({block.type for block in mesh.cells})) or "no cells"
@@ -165,7 +166,7 @@ class Mesh:
         """Writes the mesh as an HDF5 file, which a case names as mesh.file. Needs h5py."""
         import h5py
 
-        file = os.fspath(file)
+        file = path_text("file", file)
         partial = file + ".partial"
         with h5py.File(partial, "w") as h5:
             h5["mesh/points"] = self.points

@@ -5,6 +5,7 @@ import os
 import numpy as np
 
 import _sandglass
+from sandglass.arguments import integer, number, path_text, text
 from sandglass.gradient import Gradient
 
 
@@ -36,9 +37,12 @@ class Solution:
         reactions, a dict from driven sets to forces (3,; N). Negative numbers count from the end.
         Raises IndexError.
         """
-        n = len(self)
+        return self._frame("number", number)
+
+    def _frame(self, argument, number):
+        n, number = len(self), integer(argument, number)
         if not -n <= number < n:
-            raise IndexError(f"frame {number} must be in [{-n}, {n})")
+            raise IndexError(f"{argument}: frame {number} must be in [{-n}, {n})")
         number = range(n)[number]
         if number not in self._frames:
             frame = self._answer.frame(number)
@@ -91,12 +95,13 @@ class Solution:
         names = ("kinetic", "strain", "hourglass", "external_work")
         return {name: float(self.history[name][-1]) for name in names}
 
-    def estimate(self):
-        """The estimated largest and rms distance from the mean-dilatation answer on this mesh, m.
+    def estimate(self, against="golden"):
+        """The estimated largest and rms distance of the displacements from a better answer, m.
 
-        Raises InputError for a motion, and ComputationError.
+        `against`: "golden", the mean-dilatation element on this mesh, or "truth", ever finer
+        meshes. Raises InputError for a motion, and ComputationError.
         """
-        return self._answer.estimate()
+        return self._answer.estimate(text("against", against))
 
     def gradient(self, displacement=None, reactions=None, *, points=False):
         """The derivatives of a scalar J of this static answer by all that it depends on.
@@ -132,7 +137,7 @@ class Solution:
         """A `vtkUnstructuredGrid` of a frame, undeformed, with its arrays; for pyvista as it is."""
         from sandglass.vtk_grid import vtk_grid
 
-        return vtk_grid(self.points, self.cells, self.frame(frame))
+        return vtk_grid(self.points, self.cells, self._frame("frame", frame))
 
     def plot(self, field="displacement", *, frame=-1, scale=1.0, ax=None):
         """A picture of the deformed body with matplotlib.
@@ -143,12 +148,13 @@ class Solution:
         """
         from sandglass.picture import draw
 
-        faces = self._answer.boundary()
-        return draw(self.points, self.cells, faces, self.frame(frame), field, scale, ax)
+        faces, arrays = self._answer.boundary(), self._frame("frame", frame)
+        scale = number("scale", scale)
+        return draw(self.points, self.cells, faces, arrays, text("field", field), scale, ax)
 
     def save(self, file):
         """Writes a result: .h5 (all frames, an .xdmf beside it), .vtu or .npz (the last frame)."""
-        file = os.fspath(file)
+        file = path_text("file", file)
         ending = os.path.splitext(file)[1]
         if ending == ".h5":
             self._answer.write(file, f"the Python module sandglass {_sandglass.__version__}")

@@ -7,6 +7,7 @@ tables.pyi.
 
 import difflib
 import inspect
+import json
 
 import _sandglass
 
@@ -106,7 +107,7 @@ def _class_name(declared):
 
 def _annotation(key):
     kind = _TYPES.get(key["type"], "dict[str, object]")
-    kind = kind if key["count"] == 1 else "Sequence[float] | ndarray"
+    kind = kind if key["count"] == 1 else "Sequence[float] | NDArray[Any]"
     # The strength of a control may be "auto", and an axis may be a vector.
     return {"kappa": "float | str", "axis": "str | Sequence[float]"}.get(key["name"], kind)
 
@@ -156,9 +157,11 @@ def class_for(table, choice=""):
 def stub_text():
     """The text of tables.pyi."""
     text = '"""Written by the build from the declarations of the solver."""\n\n'
-    text += "from collections.abc import Sequence\n\nfrom numpy import ndarray\n\n"
-    text += "__all__: list[str]\nCLASSES: dict[str, type[Table]]\n\n"
-    text += "class Table: ...\n\ndef plain(name: str, value: object) -> object: ...\n"
+    text += "from collections.abc import Sequence\nfrom typing import Any\n\n"
+    text += "from numpy.typing import NDArray\n\n"
+    text += f"__all__ = {json.dumps(__all__)}\nCLASSES: dict[str, type[Table]]\n\n"
+    text += "class Table:\n    def __init__(self, **values: object) -> None: ...\n\n"
+    text += "def plain(name: str, value: object) -> Any: ...\ndef stub_text() -> str: ...\n"
     text += "def class_for(table: str, choice: str = ...) -> type[Table] | None: ...\n"
     for name, cls in CLASSES.items():
         text += f"\nclass {name}(Table):\n"

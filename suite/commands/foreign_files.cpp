@@ -1,4 +1,4 @@
-#include "app/foreign_files.hpp"
+#include "commands/foreign_files.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,10 @@
-#include "app/workspace.hpp"
+#include "commands/workspace.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
 
-#include "app/scene_report.hpp"
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "comparison/comparison.hpp"
@@ -106,25 +105,23 @@ Case find_case(const std::string& name_or_path) {
   return std::move(cases.front());
 }
 
-std::deque<Scene> read_scenes(const std::vector<std::string>& names,
+std::vector<Case> named_cases(const std::vector<std::string>& names,
                               const std::function<bool(const Case&)>& fit, const std::string& has_not) {
   std::vector<Case> cases;
   const auto add = [&](std::vector<Case> found) {
-    for (auto& scene : found) cases.push_back(std::move(scene));
+    for (auto& description : found) {
+      if (fit(description)) {
+        cases.push_back(std::move(description));
+      } else if (!names.empty()) {
+        throw InputError(fmt::format("{}: a dynamic case has no {}", description.file.string(), has_not));
+      }
+    }
   };
   for (const auto& name : names) add(find_cases(name));
   if (names.empty()) {
     for (const auto& file : canonical_files()) add(read_checked(file));
   }
-  std::deque<Scene> scenes;
-  for (auto& scene : cases) {
-    if (fit(scene)) {
-      scenes.push_back(understood_scene(std::move(scene)));
-    } else if (!names.empty()) {
-      throw InputError(fmt::format("{}: a dynamic case has no {}", scene.file.string(), has_not));
-    }
-  }
-  return scenes;
+  return cases;
 }
 
 }  // namespace sandglass

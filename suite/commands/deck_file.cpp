@@ -1,4 +1,4 @@
-#include "app/deck_file.hpp"
+#include "commands/deck_file.hpp"
 
 #include <fmt/format.h>
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "choice/choose.hpp"
 #include "comparison/verdict.hpp"
 
 namespace sandglass {
@@ -18,6 +19,6 @@ struct VerifiedRun {
 /// threads (0: all processors), then, with nothing else running, times the steps of all methods of a scene in
 /// turn. Points of a kappa curve get the time of their method, as kappa does not change the work, and its
 /// mean step times the ratio of the undeformed stable steps. Throws ComputationError if interrupted.
-void add_step_costs(const std::vector<VerifiedRun>& runs, int threads);
+void add_step_costs(const std::vector<VerifiedRun>& runs, int threads, const ProgressOf& progress);
 
 }  // namespace sandglass

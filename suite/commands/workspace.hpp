@@ -1,12 +1,11 @@
 #pragma once
 
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "problem/make_scene.hpp"
+#include "problem/case.hpp"
 
 namespace sandglass {
 
@@ -24,9 +23,9 @@ std::vector<Case> find_cases(const std::string& name_or_path);
 /// The single case of that name. Throws InputError that lists the variants if there are several.
 Case find_case(const std::string& name_or_path);
 
-/// The scenes of the cases that `fit`, among the cases named by path or name, or all canonical ones if there
-/// are no names. Throws InputError for a named dynamic case that does not fit, naming what it lacks.
-std::deque<Scene> read_scenes(const std::vector<std::string>& names,
+/// The cases that `fit`, among those named by path or name, or among all canonical ones if there are no
+/// names. Throws InputError for a named dynamic case that does not fit, naming what it lacks.
+std::vector<Case> named_cases(const std::vector<std::string>& names,
                               const std::function<bool(const Case&)>& fit, const std::string& has_not);
 
 }  // namespace sandglass

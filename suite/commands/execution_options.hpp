@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/App.hpp>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "assembly/internal_force.hpp"
 #include "base/error.hpp"
@@ -50,6 +50,18 @@ inline double parse_share(const char* option, const std::string& text) {
                   text, decimal_comma_hint(text)));
 }
 
+/// The value of an option that takes a time, in seconds. Throws InputError for anything else.
+inline double parse_time(const char* option, const std::string& text) {
+  if (const auto quantity = parse_quantity(text)) {
+    for (const auto& [unit, seconds] : {std::pair{"", 1.0}, {"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}) {
+      if (quantity->unit == unit) return quantity->value * seconds;
+    }
+  }
+  throw InputError(fmt::format(
+      "{} = '{}' must be a positive time in s, ms or us, such as 1ms; without a unit it is in s{}", option,
+      text, decimal_comma_hint(text)));
+}
+
 /// Throws InputError unless `value`, given by `option`, lies in [1, most].
 inline void require_count(const char* option, int value, int most) {
   if (value >= 1 && value <= most) return;
@@ -59,15 +71,6 @@ inline void require_count(const char* option, int value, int most) {
 /// More threads than this count as a typing error.
 inline void require_threads(int threads) {
   require_count("--threads", threads, 1024);
-}
-
-/// The option for the processor, see `processor_named`.
-inline CLI::Option* add_device_option(CLI::App& command, std::string& device) {
-  return command
-      .add_option("--device", device,
-                  "processor that computes the forces of elements: 'cpu', 'opencl' for the first device of "
-                  "OpenCL, a graphics card if there is one, or 'opencl:2' for the second")
-      ->capture_default_str();
 }
 
 }  // namespace sandglass

@@ -1,0 +1,142 @@
+"""Many bodies of one case that move side by side."""
+
+import numpy as np
+
+import _sandglass
+from sandglass.arguments import integer, number, real_array
+
+
+class Batch:
+    """Many bodies of one case that move side by side, from `Body.batch`.
+
+    They share mesh, laws, method, damping and step; each has its own stiffness, driven nodes and
+    load factor, which are arrays with a row for each body. Results are those of an `sg.Simulation`
+    of each body up to rounding: sums have another order. One number for all bodies will do
+    wherever an array (bodies,) is expected. Raises InputError and TypeError, and ComputationError,
+    which names the body, if elements are inverted.
+    """
+
+    def __init__(self, batch, bodies):
+        self._batch = batch
+        self.bodies = bodies  #: their number
+
+    def __len__(self):
+        return self.bodies
+
+    def scale_stiffness(self, factors):
+        """Multiplies all moduli of the case by a positive factor for each body, (bodies,)."""
+        self._batch.scale_stiffness(self._positive("factors", factors))
+
+    def impose(self, factors):
+        """Loads and imposed displacements at a load factor of each body, (bodies,).
+
+        They are reached at the end of the next `advance`; see `Simulation.impose`.
+        """
+        self._batch.impose(self._numbers("factors", factors))
+
+    def move(self, set, displacements):
+        """Targets of the driven nodes of a set at the end of the next `advance`, m.
+
+        (3,) for all bodies, (bodies, 3), or (bodies, nodes of the set, 3).
+        """
+        given = real_array("displacements", displacements)
+        if given.shape == (3,):
+            given = np.tile(given, (self.bodies, 1))
+        shapes = [(self.bodies, 3), (self.bodies, len(self.nodes(set)), 3)]
+        if given.shape not in shapes:
+            _refuse_shape("displacements", ["(3,)", *map(str, shapes)], given)
+        self._batch.move(set, given)
+
+    def advance(self, seconds):
+        """Advances all bodies; driven nodes and forces change linearly. Other threads run."""
+        self._batch.advance(seconds)
+
+    def run(self, seconds, frames, *, stiffness=None, factors=None, driven=None):
+        """Moves all bodies through a number of equal frames; returns displacements, m.
+
+        `stiffness`: factors of all moduli, (bodies,). `factors`: load factors, (bodies,), which
+        are reached linearly at the end, or (bodies, frames), at the end of each frame. `driven`: a
+        dict from driven sets to targets at the end of each frame, (bodies, frames, 3) or (bodies,
+        frames, nodes of the set, 3), m. Other parameters of laws are the same for all bodies.
+
+        Returns an array (bodies, frames, n, 3), in the numbering of the mesh.
+        """
+        frames, seconds = integer("frames", frames), number("seconds", seconds)
+        if not 1 <= frames < 2**31:
+            raise _sandglass.InputError(f"frames = {frames} must be in [1, 2^31)")
+        if not hasattr({} if driven is None else driven, "items"):
+            raise TypeError(f"driven must be a dict, but is a {type(driven).__name__}")
+        targets = {name: self._targets(name, rows, frames) for name, rows in (driven or {}).items()}
+        course = None if factors is None else self._course(factors, frames)
+        if stiffness is not None:
+            self._batch.scale_stiffness(self._positive("stiffness", stiffness))
+        found = []
+        for frame in range(frames):
+            if course is not None:
+                self._batch.impose(np.ascontiguousarray(course[:, frame]))
+            for name, rows in targets.items():
+                self._batch.move(name, np.ascontiguousarray(rows[:, frame]))
+            self._batch.advance(seconds / frames)
+            found.append(self._batch.displacements())
+        return np.stack(found, axis=1)
+
+    @property
+    def displacements(self):
+        """Displacements, m, in the numbering of the mesh; (bodies, n, 3). A copy."""
+        return self._batch.displacements()
+
+    def reaction(self, set):
+        """The forces that hold or drive a set of nodes, N; (bodies, 3)."""
+        return self._batch.reactions(set)
+
+    def nodes(self, set):
+        """The nodes of a set, sorted."""
+        return self._batch.nodes(set)
+
+    @property
+    def time(self):
+        """The simulated time, s."""
+        return self._batch.time
+
+    @property
+    def step_size(self):
+        """The longest step allowed at present, s: that of the stiffest body."""
+        return self._batch.step_size
+
+    def __repr__(self):
+        return f"<sg.Batch: {self.bodies} bodies at {self.time:.4g} s>"
+
+    def _numbers(self, name, given):
+        numbers = real_array(name, given)
+        if numbers.shape == ():
+            numbers = np.full(self.bodies, float(numbers))
+        if numbers.shape != (self.bodies,):
+            _refuse_shape(name, [f"({self.bodies},)"], numbers)
+        return numbers
+
+    def _positive(self, name, given):
+        numbers = self._numbers(name, given)
+        if not (numbers > 0).all():
+            raise _sandglass.InputError(f"{name} must be positive, but has {numbers.min()}")
+        return numbers
+
+    def _course(self, factors, frames):
+        """Load factors at the ends of frames, (bodies, frames)."""
+        given = real_array("factors", factors)
+        if given.shape == (self.bodies, frames) and given.ndim == 2:
+            return given
+        if given.shape not in ((), (self.bodies,)):
+            _refuse_shape("factors", [f"({self.bodies},)", f"({self.bodies}, {frames})"], given)
+        return self._numbers("factors", given)[:, None] * np.arange(1, frames + 1) / frames
+
+    def _targets(self, name, rows, frames):
+        given = real_array(f"driven: '{name}'", rows)
+        allowed = [(self.bodies, frames, 3), (self.bodies, frames, len(self.nodes(name)), 3)]
+        if given.shape not in allowed:
+            _refuse_shape(f"driven: '{name}'", map(str, allowed), given)
+        return given
+
+
+def _refuse_shape(name, shapes, array):
+    allowed = " or ".join(shapes)
+    raise _sandglass.InputError(f"{name} must have the shape {allowed}, but has {array.shape}")

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/result_file.hpp"
+#include "problem/case.hpp"
+
+namespace sandglass {
+
+/// Which kernel is written.
+struct KernelRequest {
+  std::string method;
+  std::string dialect = "c";
+  std::string precision = {};        ///< "double" or "float"; empty: double where the dialect has it
+  std::optional<int> material = {};  ///< its number in the case, from 1; none: the only one
+};
+
+/// The force of a method's elements with an elastic law of a case, as source in a language. The provenance's
+/// version and revision are named in its comment. Throws InputError for a method or law without such a
+/// kernel, an unknown dialect, and a precision that it lacks.
+std::string kernel_source(const KernelRequest& request, const Case& description,
+                          const Provenance& provenance);
+
+}  // namespace sandglass
