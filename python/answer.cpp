@@ -8,6 +8,7 @@
 #include "commands/execution_options.hpp"
 #include "comparison/comparison.hpp"
 #include "comparison/truth_estimate.hpp"
+#include "device/opencl_processor.hpp"
 #include "copied.hpp"
 #include "derivatives.hpp"
 #include "io/case_file.hpp"
@@ -60,6 +61,7 @@ struct Solving {
   int threads = 1;
   std::optional<double> sleep = {};     ///< leave out elements that move by less than this share
   std::optional<double> accuracy = {};  ///< refine the mesh until the truth is this near
+  std::shared_ptr<const Processor> processor = nullptr;  ///< that computes forces; none: this one
 };
 
 Solving solving(const Arguments& given) {
@@ -67,7 +69,8 @@ Solving solving(const Arguments& given) {
     const auto text = given.optional(name, &Arguments::text);
     return text ? std::optional(parse_share(name, *text)) : std::nullopt;
   };
-  Solving how{given.integer("threads"), share("sleep"), share("accuracy")};
+  Solving how{given.integer("threads"), share("sleep"), share("accuracy"),
+              processor_named(given.text("device"), "device")};
   require_count("threads", how.threads, 1024);
   if (how.sleep && how.accuracy)
     throw InputError("against: a refined mesh is computed as a whole; leave out sleep");
@@ -82,6 +85,7 @@ class Answer : public NeverUnmade {
       : problem_(with_mesh(case_text, checked(std::move(mesh)))), scene_(make_scene(problem_)) {
     choice_ = method_of(scene_.settings);
     choice_.threads = how.threads;
+    choice_.processor = how.processor;
     if (how.accuracy && !scene_.settings.method) choice_.method = golden_method;
     require_static(how);
     Recorder recorder(watch);

@@ -22,6 +22,7 @@
 #include "commands/workspace.hpp"
 #include "comparison/mesh_quality.hpp"
 #include "comparison/verdict_json.hpp"
+#include "device/opencl_processor.hpp"
 #include "derivatives.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
@@ -122,7 +123,7 @@ std::string choose_method(const Arguments& given, Watch& watch) {
 std::string verify_cases(const Arguments& given, Watch& watch) {
   require_worker_count(given);
   const VerifyPlan plan{parse_precision(given.text("precision")), given.integer("threads"),
-                        given.flag("costs")};
+                        given.flag("costs"), processor_named(given.text("device"), "device")};
   const auto names = given.texts("cases");
   const auto results = given.optional("results", &Arguments::text);
   return watch.run([&] {
@@ -218,6 +219,7 @@ BenchPlan bench_plan(const Arguments& given) {
     plan.precisions.push_back(parse_precision(precision));
   plan.settings.repetitions = given.integer("repetitions");
   require_count("repetitions", plan.settings.repetitions, 1'000'000);
+  plan.processor = processor_named(given.text("device"), "device");
   return plan;
 }
 

@@ -141,9 +141,9 @@ void OpenClDevice::require_room(std::span<const std::size_t> bytes) const {
                     of_one = number_of(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   if (all <= room && largest <= of_one) return;
   throw InputError(
-      fmt::format("--device: '{}' has {:.3g} GB of memory, at most {:.3g} GB of them in one piece; "
+      fmt::format("device: '{}' has {:.3g} GB of memory, at most {:.3g} GB of them in one piece; "
                   "this needs {:.3g} GB, {:.3g} GB of them in one piece; allowed: a smaller mesh, "
-                  "--precision float, or another device",
+                  "single precision, or another device",
                   name_, 1e-9 * static_cast<double>(room), 1e-9 * static_cast<double>(of_one),
                   1e-9 * static_cast<double>(all), 1e-9 * static_cast<double>(largest)));
 }

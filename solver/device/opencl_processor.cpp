@@ -54,8 +54,8 @@ class OpenClProcessor final : public Processor {
                                             const Materials& materials, const MethodChoice& choice) const {
     if (const auto reason = refusal(materials, choice); !reason.empty()) {
       throw InputError(
-          fmt::format("--device: {}; allowed: elastic laws, methods such as tl-mean-dilatation, and "
-                      "the precisions of the device; or --device cpu",
+          fmt::format("device: {}; allowed: elastic laws, methods such as tl-mean-dilatation, and "
+                      "the precisions of the device; or the device cpu",
                       reason));
     }
     return std::make_unique<OpenClForce<Real>>(device_, std::move(own), mesh, materials, choice);
@@ -76,7 +76,7 @@ std::string described(const std::vector<OpenClDeviceName>& devices) {
 
 }  // namespace
 
-std::shared_ptr<const Processor> processor_named(const std::string& name) {
+std::shared_ptr<const Processor> processor_named(const std::string& name, std::string_view key) {
   if (name == "cpu") return nullptr;
   const auto devices = opencl_devices();
   std::size_t number = 0;
@@ -90,7 +90,7 @@ std::shared_ptr<const Processor> processor_named(const std::string& name) {
   if (number >= 1 && number <= devices.size())
     return std::make_shared<const OpenClProcessor>(devices[number - 1]);
   throw InputError(fmt::format(
-      "--device = '{}' is no processor of this machine{}; allowed: {}", name,
+      "{} = '{}' is no processor of this machine{}; allowed: {}", key, name,
       devices.empty() ? " (OpenCL finds none; a driver is missing, such as pocl-opencl-icd for processors)"
                       : "",
       described(devices)));

@@ -71,6 +71,7 @@ class Body:
         self,
         *,
         threads: int = ...,
+        device: str = ...,
         progress: _Progress = ...,
         sleep: _Quantity | None = ...,
         against: Literal["truth"] | None = ...,
@@ -248,6 +249,7 @@ def choose(
 def verify(
     *cases: _Case,
     precision: Literal["double", "float"] = ...,
+    device: str = ...,
     costs: bool = ...,
     threads: int = ...,
     results: _Path | None = ...,
@@ -302,6 +304,7 @@ def bench(
     threads: Sequence[int] = ...,
     methods: Sequence[str] = ...,
     precision: Sequence[str] = ...,
+    device: str = ...,
     repetitions: int | None = ...,
     progress: _Progress = ...,
 ) -> Record: ...

@@ -112,10 +112,13 @@ class Body:
             raise _sandglass.InputError(f"{file}: {error}") from None
         return body
 
-    def solve(self, *, threads=1, progress=None, sleep=None, against=None, **method):
+    def solve(
+        self, *, threads=1, device="cpu", progress=None, sleep=None, against=None, **method
+    ):
         """The answer of the case: its static equilibrium, or its motion.
 
-        `threads` do not change the answer. `progress=True` shows how far it is; a callable gets the
+        `threads` do not change the answer. `device`: the processor that computes the forces of
+        elements, such as "opencl" (as `sandglass run --device`). `progress=True` shows how far it is; a callable gets the
         completed share of the work now and then. `sleep`: leave out elements that would move by
         less than this share of the largest imposed displacement, such as 0.001 or "0.1%".
         `against="truth"`: the mesh is refined until the mean-dilatation element's answer, the
@@ -137,6 +140,7 @@ class Body:
             accuracy = quantity_text("accuracy", accuracy)
         given = {
             "threads": threads,
+            "device": device,
             "sleep": None if sleep is None else quantity_text("sleep", sleep),
             "accuracy": accuracy,
         }

@@ -85,11 +85,20 @@ def choose(
     return choice
 
 
-def verify(*cases, precision="double", costs=True, threads=0, results=None, progress=None):
+def verify(
+    *cases,
+    precision="double",
+    device="cpu",
+    costs=True,
+    threads=0,
+    results=None,
+    progress=None,
+):
     """Compares all methods with the references of cases; without arguments, of all canonical ones.
 
-    `precision`: "double" or "float"; limits are checked in double only. `costs`: whether to
-    measure the cost of steps. `threads`: runs at the same time, 0 for one per processor.
+    `precision`: "double" or "float"; limits are checked in double only. `device`: the processor
+    that computes the forces of elements, such as "opencl"; what it cannot compute is left out.
+    `costs`: whether to measure the cost of steps on this processor. `threads`: runs at the same time, 0 for one per processor.
     `results`: a folder for the final state of every run.
 
     Returns a record: `records`, one for each case, method and kappa, with errors against `golden`
@@ -99,7 +108,7 @@ def verify(*cases, precision="double", costs=True, threads=0, results=None, prog
     with _files(*cases) as files:
         folder = None if results is None else path_text("results", results)
         given = dict(cases=files, precision=precision, costs=costs, threads=threads, results=folder)
-        return _called("verify", progress, **given)
+        return _called("verify", progress, device=device, **given)
 
 
 def score(displacement, case, *, name=None, field="", tolerance=1e-5, progress=None):
@@ -199,6 +208,7 @@ def bench(
     threads=(),
     methods=(),
     precision=("double", "float"),
+    device="cpu",
     repetitions=None,
     progress=None,
 ):
@@ -206,7 +216,7 @@ def bench(
 
     `elements`, `cubes`: also boxes of about these numbers of elements, or of cubes. `threads`,
     `methods`, `precision`: lists of those to time. `repetitions`: batches of about 0.5 ms for each
-    variant. `rest`: times quasi-static cases until static equilibrium instead. `bodies`: times this
+    variant. `device`: also time another processor, such as "opencl". `rest`: times quasi-static cases until static equilibrium instead. `bodies`: times this
     many bodies of each case side by side and one by one instead. A variant with a wrong result
     gets no time. Returns a record with `records`.
     """
@@ -214,6 +224,8 @@ def bench(
         raise TypeError(f"rest must be True or False, but is a {type(rest).__name__}")
     if sum([rest, bodies is not None, bool(elements or cubes)]) > 1:
         raise _sandglass.InputError("rest, bodies, and elements or cubes exclude each other")
+    if device != "cpu" and (rest or bodies is not None):
+        raise _sandglass.InputError(f"device = {device!r} must be 'cpu' with rest and bodies")
     kind = "bench_rest" if rest else "bench" if bodies is None else "bench_bodies"
     with _files(*cases) as files:
         return _called(
@@ -226,6 +238,7 @@ def bench(
             threads=threads,
             methods=methods,
             precision=precision,
+            device=device,
             repetitions=_REPETITIONS if repetitions is None else repetitions,
         )
 
