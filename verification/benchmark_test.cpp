@@ -218,7 +218,7 @@ TYPED_TEST(SteppedModelTest, every_variant_has_the_forces_of_the_scalar_double_k
   for (const auto& choice : variants) {
     EXPECT_LT(relative_difference(make_stepped_model(scene, choice)->forces(), reference),
               force_limit(choice.precision, scene.materials.list.front().law))
-        << name_of(choice.kernel) << " " << name_of(choice.precision) << " " << choice.threads;
+        << kernel_name(choice) << " " << name_of(choice.precision) << " " << choice.threads;
   }
 }
 
