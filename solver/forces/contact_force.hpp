@@ -59,6 +59,15 @@ class ContactForce : public BodyForce {
   /// none.
   virtual bool correct_contact(Row<double>* /*memory*/) const { return false; }
 
+  /// Augments it: the forces of this evaluation become constant forces of the nodes that touch, beside those
+  /// of their further depths, or ends that. In the next equilibrium they penetrate less. Returns whether any
+  /// has a constant force.
+  virtual bool augment(bool /*augmented*/, Row<double>* /*memory*/) const { return false; }
+
+  /// Adds the potential (J) with these forces.
+  virtual void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,
+                                     double& sum) const = 0;
+
   /// Moves touching nodes along its normal so that displacements from those of `before` change their depth as
   /// on a plane: nodes slide along curved obstacles.
   virtual void slide(Factors /*factors*/, NodalRows /*before*/, const Row<double>* /*memory*/,
@@ -72,17 +81,20 @@ class ContactForce : public BodyForce {
   /// The force that takes its place in static equilibrium; none: it is the same.
   virtual std::shared_ptr<const BodyForce> at_rest() const { return nullptr; }
 
-  /// The body was moved to static equilibrium and stopped there: sets the rows such that the next step of a
-  /// motion is the first, and adds the forces at rest (N).
-  virtual void begin_again(Factors factors, NodalRows u, Row<double>* memory,
-                           AtNodes<Row<double>> forces) const {
-    add_contact(factors, u, memory, forces);
+  /// The body was moved to static equilibrium and stopped there, with this force (N) on it: sets the rows
+  /// such that the next step of a motion is the first.
+  virtual void begin_again(const Vector& force, Row<double>* memory) const {
+    for (std::size_t i = 0; i < 3; ++i) memory[0][i] = force[i];
   }
 
   /// As without friction.
   void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const final {
     std::vector<Row<double>> rows(memory());
     add_contact(factors, motion.u, rows.data(), forces);
+  }
+  void add_potential(Factors factors, NodalRows u, double& sum) const final {
+    const std::vector<Row<double>> rows(memory());
+    add_contact_potential(factors, u, rows.data(), sum);
   }
   void add_stiffness(AtNodes<Row<float>> /*diagonal*/) const final {}
   void add_size(double /*arm*/, double& /*sum*/) const final {}

@@ -53,7 +53,8 @@ class KinematicContact final : public ObstacleContact {
   bool moves_nodes() const override { return true; }
   void add_contact(Factors /*factors*/, NodalRows /*u*/, Row<double>* /*memory*/,
                    AtNodes<Row<double>> /*forces*/) const override {}
-  void add_potential(Factors /*factors*/, NodalRows /*u*/, double& /*sum*/) const override {}
+  void add_contact_potential(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
+                             double& /*sum*/) const override {}
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
                  std::vector<LoadRates>& /*rates*/) const override {}
   void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
@@ -64,15 +65,9 @@ class KinematicContact final : public ObstacleContact {
     return make_penalty_contact(nodes_, obstacle_, shape_, curve_, start_);
   }
 
-  void begin_again(Factors factors, NodalRows u, Row<double>* rows,
-                   AtNodes<Row<double>> forces) const override {
-    const auto rest = make_penalty_contact(nodes_, obstacle_, shape_, curve_, start_);
-    Rows<double> of_rest(rest->memory());
-    rest->add_contact(factors, u, of_rest.data(), forces);
-    Memory memory(rows);
-    memory.pushes = of_rest[0];
-    memory.moves = of_rest[1];
-    memory.of_nodes[0] = {};
+  void begin_again(const Vector& force, Row<double>* rows) const override {
+    ContactForce::begin_again(force, rows);
+    Memory(rows).of_nodes[0] = {};
   }
 
  private:

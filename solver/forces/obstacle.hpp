@@ -40,7 +40,7 @@ struct Obstacle {
   Vector displacement{};  ///< at the factor one, m
   LoadCurve curve = {};
   double friction = 0.0;   ///< Coulomb's coefficient
-  double penalty = 250.0;  ///< see parameters
+  double penalty = 100.0;  ///< see parameters
   Method method = Method::kinematic;
 
   static constexpr auto parameters() {

@@ -9,8 +9,9 @@ namespace {
 
 constexpr std::string_view path_of_friction = "friction depends on the path";
 
-/// It keeps rows for each node. With friction its anchor, m, else whether its fixed contact is contrary;
-/// whether it touches. With friction also the extension of its spring, m.
+/// It keeps rows for each node: without friction whether its fixed contact is contrary, its depth and the
+/// depth of its constant force, m; with friction its anchor, m. Then whether it touches. With friction also
+/// the extension of its spring, m.
 class PenaltyContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
@@ -26,16 +27,20 @@ class PenaltyContact final : public ObstacleContact {
     for_each_gap(moved, u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const auto& [node, X, stiffness] = nodes_[k];
       Row<double>* of_node = memory.of_nodes + by_node() * k;
-      const bool inside = gap.distance < 0.0, touched = of_node[0][3] != 0.0;
+      const double constant = constant_depth(of_node);
+      const bool inside = gap.distance < constant, touched = of_node[0][3] != 0.0;
       const bool touches = fixed ? touched : inside;
       if (touches != inside) ++memory.sums[2];
       if (!touches && touched) let_go(stiffness, of_node, memory);
-      if (!sticks()) of_node[0][0] = touches != inside ? 1.0 : 0.0;
+      if (!sticks()) {
+        of_node[0][0] = touches != inside ? 1.0 : 0.0;
+        of_node[0][1] = -gap.distance;
+      }
       if (!touches) return;
       const double depth = -gap.distance;
-      memory.pushes[3] += 0.5 * stiffness * depth * depth;
+      memory.pushes[3] += 0.5 * stiffness * depth * (depth + 2.0 * constant);
       memory.moves[3] = std::max(memory.moves[3], depth);
-      Vector force = sum({}, stiffness * depth, gap.normal);
+      Vector force = sum({}, stiffness * (depth + constant), gap.normal);
       if (sticks()) force = sum(force, -stiffness, hold(x, gap, stiffness, of_node, memory));
       of_node[0][3] = 1.0;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -46,17 +51,33 @@ class PenaltyContact final : public ObstacleContact {
   }
 
   /// Without friction.
-  void add_potential(Factors factors, NodalRows u, double& sum) const override {
+  void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,
+                             double& sum) const override {
     for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
-      const double depth = std::max(-gap.distance, 0.0);
-      sum += 0.5 * nodes_[k].stiffness * depth * depth;
+      const double constant = constant_depth(memory + Memory::own + by_node() * k),
+                   depth = std::max(constant - gap.distance, 0.0);
+      sum += 0.5 * nodes_[k].stiffness * (depth * depth - constant * constant);
     });
   }
 
-  /// Curved obstacles have no larger stiffness in any direction, nor do springs along them.
+  bool augment(bool augmented, Row<double>* memory) const override {
+    if (sticks()) return false;
+    bool any = false;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      Row<double>& of_node = Memory(memory).of_nodes[k];
+      of_node[2] = augmented && of_node[3] != 0.0 ? std::max(of_node[1] + of_node[2], 0.0) : 0.0;
+      any = any || of_node[2] > 0.0;
+    }
+    return any;
+  }
+
+  /// Curved obstacles have no larger stiffness in any direction, nor do springs along them. A spring that
+  /// only pushes returns a node with more than its energy if the step ends its contact too late: with steps of
+  /// 1.8 over its frequency, twice in the mean, of 0.9, 1.015 times, of 0.6, 1.001 times.
   void add_rates(Factors /*largest*/, const std::vector<double>& masses,
                  std::vector<LoadRates>& rates) const override {
-    for (const auto& [node, X, stiffness] : nodes_) rates[at(node)].square += stiffness / masses[at(node)];
+    for (const auto& [node, X, stiffness] : nodes_)
+      rates[at(node)].square += 9.0 * stiffness / masses[at(node)];
   }
 
   void fix_contact(bool fixed, Row<double>* memory) const override {
@@ -68,7 +89,7 @@ class PenaltyContact final : public ObstacleContact {
     for (std::size_t k = nodes_.size(); k-- > 0;) {
       Row<double>& of_node = of_nodes[by_node() * k];
       if (of_node[0] == 0.0) continue;
-      of_node = {{0.0, 0.0, 0.0, 1.0 - of_node[3]}};
+      of_node = {{0.0, of_node[1], of_node[2], 1.0 - of_node[3]}};
       return true;
     }
     return false;
@@ -119,8 +140,12 @@ class PenaltyContact final : public ObstacleContact {
 
   /// Whether a node is linearized as touching: unless it is fixed, also where body and obstacle just fit.
   bool touches(std::size_t k, const Gap& gap, const Row<double>* memory) const {
-    return is_fixed(memory) ? memory[Memory::own + by_node() * k][3] != 0.0 : gap.distance <= rounding_;
+    const Row<double>* of_node = memory + Memory::own + by_node() * k;
+    return is_fixed(memory) ? of_node[0][3] != 0.0 : gap.distance <= constant_depth(of_node) + rounding_;
   }
+
+  /// The depth (m) whose force is constant.
+  double constant_depth(const Row<double>* of_node) const { return sticks() ? 0.0 : of_node[0][2]; }
 
   static bool is_fixed(const Row<double>* memory) { return memory[2][3] != 0.0; }
 
@@ -154,7 +179,7 @@ class PenaltyContact final : public ObstacleContact {
   }
 
   void let_go(double stiffness, Row<double>* of_node, Memory& memory) const {
-    of_node[0] = {};
+    of_node[0][3] = 0.0;
     if (!sticks()) return;
     Row<double>& stretch = of_node[1];
     for (std::size_t i = 0; i < 3; ++i) memory.sums[0] += 0.5 * stiffness * stretch[i] * stretch[i];

@@ -69,7 +69,7 @@ class Simulation<Real>::Parts {
   long settle() {
     const Scene present = with_load(scene(), to_, time(), factor_to_);
     const Model at_present(present, model().choice());
-    LevelsObserver observer;
+    LastFrame observer;
     const Relaxation answer = relax(at_present, observer);
     if (!in_equilibrium(answer)) {
       throw ComputationError(fmt::format("no equilibrium: {} after {} evaluations, residual {:.1e}",
@@ -85,7 +85,7 @@ class Simulation<Real>::Parts {
     elements().set_levels(body.state(), observer.levels);
     body.impose(to_, factor_to_, leapfrog_.time());
     body.evaluate_forces();
-    body.begin_again();
+    body.begin_again(observer.reactions);
     std::fill(body.state().increment.begin(), body.state().increment.end(), Row<Real>{});
     imposed_ = to_;
     factor_ = factor_to_;
@@ -96,10 +96,14 @@ class Simulation<Real>::Parts {
   }
 
  private:
-  /// Keeps the levels of the elements of the last frame.
-  struct LevelsObserver final : Observer {
-    void frame(const Frame& frame) override { levels = frame.levels; }
+  /// Keeps the levels of the elements and the reactions of the last frame.
+  struct LastFrame final : Observer {
+    void frame(const Frame& frame) override {
+      levels = frame.levels;
+      reactions = frame.reactions;
+    }
     std::vector<double> levels;
+    Reactions reactions;
   };
 
   const Model& model() const { return problem_->model(); }

@@ -99,11 +99,16 @@ class Body {
   /// See Loads::slide.
   void slide(const Rows<Real>& before, Rows<Real>& u) const { loads_.slide(before, u); }
 
-  /// See Loads::begin_again.
-  void begin_again() { loads_.begin_again(of_all(state_.u)); }
+  /// See Loads::begin_again; with the reactions at rest.
+  void begin_again(const Reactions& reactions) {
+    loads_.begin_again([&](std::string_view name) { return reactions.at(std::string(name)); });
+  }
 
   /// See Loads::fix_contact.
   void fix_contact(bool fixed) { loads_.fix_contact(fixed); }
+
+  /// See Loads::augment_contact.
+  bool augment_contact(bool augmented) { return loads_.augment_contact(augmented); }
 
   /// See Loads::correct_contact.
   void correct_contact() { loads_.correct_contact(); }

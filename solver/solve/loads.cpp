@@ -143,7 +143,8 @@ double Loads<Real>::potential(const Rows<Real>& u) const {
   const Rows<double> there = loaded(u);
   double sum = 0.0;
   for (const auto* load : loads_) load->add_potential(factors_, by_node(there.data()), sum);
-  for (const auto* contact : contacts_) contact->add_potential(factors_, by_node(there.data()), sum);
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->add_contact_potential(factors_, by_node(there.data()), memory_.data() + memory_of_[c], sum);
   return sum;
 }
 
@@ -160,17 +161,17 @@ void Loads<Real>::slide(const Rows<Real>& before, Rows<Real>& u) const {
 }
 
 template <class Real>
-void Loads<Real>::begin_again(const Rows<Real>& u) {
-  const Rows<double> there = loaded(u);
-  for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c]->begin_again(factors_, by_node(there.data()), memory_.data() + memory_of_[c],
-                              by_node(touching_.data()));
-}
-
-template <class Real>
 void Loads<Real>::fix_contact(bool fixed) {
   for (std::size_t c = 0; c < contacts_.size(); ++c)
     contacts_[c]->fix_contact(fixed, memory_.data() + memory_of_[c]);
+}
+
+template <class Real>
+bool Loads<Real>::augment_contact(bool augmented) {
+  bool any = false;
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    any = contacts_[c]->augment(augmented, memory_.data() + memory_of_[c]) || any;
+  return any;
 }
 
 template <class Real>

@@ -35,11 +35,20 @@ class Loads {
   /// See ContactForce::slide.
   void slide(const Rows<Real>& before, Rows<Real>& u) const;
 
-  /// See ContactForce::begin_again; at the displacements u (m).
-  void begin_again(const Rows<Real>& u);
+  /// See ContactForce::begin_again; force_of(name) is the force of an obstacle.
+  template <class ForceOf>
+  void begin_again(const ForceOf& force_of) {
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      Row<double>* memory = memory_.data() + memory_of_[c];
+      contacts_[c]->begin_again(force_of(contacts_[c]->touch(memory).name), memory);
+    }
+  }
 
   /// See ContactForce::fix_contact.
   void fix_contact(bool fixed);
+
+  /// See ContactForce::augment; of all obstacles.
+  bool augment_contact(bool augmented);
 
   /// Changes one node of all obstacles; see ContactForce::correct_contact.
   void correct_contact();

@@ -253,10 +253,13 @@ class Search {
   }
 
   /// Whether the search may end: not with an inverted element, as another equilibrium may be near, and at the
-  /// full load with the nodes that touch obstacles there.
+  /// full load with the nodes that touch obstacles there, after one augmented step.
   bool arrived() {
     if (load_levels_.full() && equilibrium_.residual() < tolerance()) equilibrium_.update_contact();
-    return (near() || (at_rounding() && equilibrium_.bears_nothing())) && is_healthy(body());
+    if (!(near() || (at_rounding() && equilibrium_.bears_nothing())) || !is_healthy(body())) return false;
+    if (!load_levels_.full() || std::exchange(augmented_, true) || !body().augment_contact(true)) return true;
+    equilibrium_.start(load_levels_.effort());
+    return false;
   }
 
   bool near() const {
@@ -321,6 +324,7 @@ class Search {
 
   void retry_load_level() {
     const State<Real> failed = body().state();
+    augmented_ = body().augment_contact(false);
     if (load_levels_.failed(body())) return;
     body().state() = failed;
     const std::string where =
@@ -397,9 +401,10 @@ class Search {
   double work_ = 0.0;
   long first_evaluation_ = 0;  // of this load level
   long evaluations_of_estimates_ = 0;
-  long next_check_;       // evaluations
-  bool lowered_ = false;  // whether elements could be demoted at the full load
-  bool settled_ = false;  // whether levels no longer changed at a moderate residual
+  long next_check_;         // evaluations
+  bool lowered_ = false;    // whether elements could be demoted at the full load
+  bool settled_ = false;    // whether levels no longer changed at a moderate residual
+  bool augmented_ = false;  // whether obstacles have been
   bool ended_ = false;
 };
 
