@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "app/si_units.hpp"
 #include "assembly/method_entry.hpp"
@@ -96,11 +97,13 @@ void print_problem(const Scene& scene) {
     volume += V;
     mass += scene.materials.list[scene.materials.of(e)].density * V;
   }
+  const std::vector<double>& masses = scene.attached_masses;
+  const double attached = std::accumulate(masses.begin(), masses.end(), 0.0);
   const auto [low, high] = bounding_box(mesh.points);
   fmt::print("{}: {} x {} x {}, {}, {}; {}, {}{}\n", scene.settings.name, length_text(high[0] - low[0]),
              length_text(high[1] - low[1]), length_text(high[2] - low[2]),
              volume < 1e-3 ? fmt::format("{:.3g} cm^3", 1e6 * volume) : fmt::format("{:.3g} m^3", volume),
-             mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass),
+             mass_text(mass) + (attached > 0.0 ? fmt::format(" with {} attached", mass_text(attached)) : ""),
              plural(static_cast<long>(mesh.cells.size()), "element"),
              plural(static_cast<long>(mesh.points.size()), "node"), parts_text(scene));
   for (const Material& material : scene.materials.list) {

@@ -30,10 +30,6 @@ std::string plural(std::size_t count, std::string_view what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-std::string mass_text(double mass) {
-  return mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass);
-}
-
 std::string extent_text(const std::vector<int>& nodes, const NodalField& points) {
   const auto [low, high] = bounding_box(values_at(nodes, points));
   std::vector<std::string> words;

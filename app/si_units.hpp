@@ -32,4 +32,9 @@ inline std::string length_text(double metres) {
   return small ? fmt::format("{:.3g} mm", 1e3 * metres) : fmt::format("{:.3g} m", metres);
 }
 
+/// A mass (kg) as text, in g below a kilogram.
+inline std::string mass_text(double mass) {
+  return mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass);
+}
+
 }  // namespace sandglass

@@ -343,6 +343,9 @@ displacement = [0.0, 0.0, 0.125]
 
 const std::string published =
     "[[published]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n";
+std::string measured(const std::string& keys) {
+  return "[[measured]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n" + keys;
+}
 const std::string program = "[[published.programs]]\nprogram = \"b\"\nsource = \"c\"\n";
 
 struct BadCase {
@@ -523,6 +526,25 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"program_with_no_mesh_and_two_values",
                 good + published + program + "values = [1.0, 2.0]\n",
                 {"published.programs.values has 2 numbers; 1 expected"}},
+        BadCase{"measured_without_scatter", good + measured(""), {"measured.scatter is missing"}},
+        BadCase{"measured_beside_the_plane_of_its_set",
+                good + measured("scatter = 0.1\nat = [0.0, 0.0, 3.1]\n"),
+                {"measured.at = [0, 0, 3.1] is not in the plane of the set 'top'"}},
+        BadCase{"period_of_a_static_answer",
+                good + measured("scatter = 0.1\nof = \"period\"\n"),
+                {"measured.of = 'period' is for dynamic cases"}},
+        BadCase{"unknown_feature",
+                good + measured("scatter = 0.1\nof = \"phase\"\n"),
+                {"measured.of = 'phase' is not known", "end, peak, period"}},
+        BadCase{"scatter_of_a_published_value",
+                good + published + "scatter = 0.1\n",
+                {"published.scatter is not a key of this table"}},
+        BadCase{"negative_mass",
+                good + "[[mass]]\nset = \"top\"\ntotal = -1.0\n",
+                {"mass.total = -1 must be in [0, inf)"}},
+        BadCase{"mass_on_nothing",
+                good + "[[mass]]\nset = \"tip\"\ntotal = 1.0\n",
+                {"mass.set = 'tip' is not a node set"}},
         BadCase{"figure_of_another_reference",
                 with("reference = \"golden\"", "reference = \"published\""),
                 {"expect.figure = 'rms_relative_error' is not known", "relative_error"}},

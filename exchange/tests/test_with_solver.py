@@ -209,12 +209,14 @@ def test_a_full_disk_leaves_the_old_file(block, ending, size):
     assert (folder / f"own.{ending}").read_text() == "good"
 
 
-def test_a_motion_with_a_rotation_has_no_deck(block):
+def test_a_motion_with_a_rotation_or_a_mass_has_no_deck(block):
     turned = '[[rotation]]\nset = "head"\naxis = "z"\nangle = 9.0\n'
     text = BLOCK[: BLOCK.rindex("[[displacement]]")] + turned
-    block.write_text(dynamic(text, duration=0.05))
     words = "-o", block.parent / "a.xml", "--deck", "niftysim"
+    block.write_text(dynamic(text, duration=0.05))
     refused("mesh", block, *words, message="a deck cannot hold rotations of a dynamic case")
+    block.write_text(dynamic(BLOCK + '[[mass]]\nset = "head"\ntotal = 1.0\n', duration=0.05))
+    refused("mesh", block, *words, message="a deck cannot hold masses of a dynamic case")
 
 
 def test_a_deck_of_a_motion_says_how_it_moves(block):

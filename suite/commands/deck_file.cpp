@@ -27,6 +27,7 @@ void require_expressible(const Scene& scene) {
   if (!scene.ties.empty()) refuse("a deck cannot hold hanging nodes, which refinement and ties make");
   if (scene.settings.quasi_static) return;
   if (!scene.initial_velocities.empty()) refuse("a deck cannot hold initial velocities");
+  if (!scene.attached_masses.empty()) refuse("a deck cannot hold masses of a dynamic case");
   if (scene.angles.size() > 1) refuse("a deck cannot hold rotations of a dynamic case");
   for (const auto& load : dead_loads(scene.forces)) {
     if (load.curve != 0) refuse("a deck cannot hold load curves of a dynamic case");
