@@ -97,6 +97,6 @@ def _elements(material, mesh, alone):
     if name in mesh.element_sets:
         return mesh.element_sets[name].tolist()
     raise _sandglass.InputError(
-        f"{material._name()}: parameters that are arrays need `elements`, a set that is an array of "
-        f"elements, but that is {name!r}"
+        f"{material._name()}: parameters that are arrays need `elements`, a set that is an array "
+        f"of elements, but that is {name!r}"
     )
