@@ -100,6 +100,10 @@ CALLS = {
     "Mesh.of": (sg.Mesh.of, {"mesh": "mesh.h5"}),
     "Mesh.save": (of("save", lambda: body().mesh), {"file": "own.h5"}),
     "NeoHookean": (lambda **v: body(sg.NeoHookean(**v)).solve(), LAW),
+    "moduli": (
+        lambda **v: body(sg.NeoHookean(**v)).solve().gradient(POINTS),
+        LAW | {"young_modulus": [3e3, 4e3], "poisson_ratio": [0.4, 0.3]},
+    ),
     "Displacement": (lambda **v: loaded(sg.Displacement, **v), HEAD),
     "Force": (lambda **v: loaded(sg.Force, **v), FORCE),
     "Body": (

@@ -99,7 +99,7 @@ class Solution:
     element_sets: dict[str, NDArray[int32]]
     history: dict[str, _Doubles]
     summary: dict[str, float | str]
-    def __init__(self, answer: Any, name: str) -> None: ...
+    def __init__(self, answer: Any, name: str, laws: Any) -> None: ...
     def __len__(self) -> int: ...
     def frame(self, number: int = ...) -> dict[str, Any]: ...
     @property
@@ -128,7 +128,7 @@ class Solution:
     ) -> Gradient: ...
     def sensitivity(
         self,
-        materials: Mapping[str, float] | Sequence[Mapping[str, float]] | None = ...,
+        materials: Mapping[str, ArrayLike] | Sequence[Mapping[str, ArrayLike]] | None = ...,
         *,
         forces: ArrayLike | None = ...,
         imposed: ArrayLike | None = ...,
@@ -140,14 +140,14 @@ class Solution:
     def save(self, file: _Path) -> None: ...
 
 class Gradient:
-    materials: tuple[dict[str, float], ...]
+    materials: tuple[dict[str, Any], ...]
     stiffness: _Doubles
     forces: _Doubles
     imposed: _Doubles
     points: _Doubles | None
     def __init__(
         self,
-        materials: tuple[dict[str, float], ...],
+        materials: tuple[dict[str, Any], ...],
         stiffness: _Doubles,
         forces: _Doubles,
         imposed: _Doubles,

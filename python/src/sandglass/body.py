@@ -6,6 +6,7 @@ import tomllib
 import _sandglass
 from sandglass.arguments import path_text, quantity_text
 from sandglass.batch import Batch
+from sandglass.element_laws import ElementLaws
 from sandglass.mesh import Mesh, _named, mesh_of_case
 from sandglass.progress import shown
 from sandglass.solution import Solution
@@ -21,9 +22,10 @@ class Body:
 
     `mesh`: an `sg.Mesh`, a generator such as `sg.Box`, the path of a mesh file, or an object of
     meshio or VTK. `material`: a law such as `sg.NeoHookean`, or several that name their
-    `elements`. `tables`: loads, imposed motions and settings, such as `sg.Displacement` and
-    `sg.Pressure`; with `sg.Dynamics` the answer is a motion, else static equilibrium. `sets`: a
-    dict from names to arrays of nodes, or to rules such as `{"z": [0, 0]}`; `element_sets`
+    `elements`; a number of a law may differ from element to element, as an array with a number for
+    each of its elements. `tables`: loads, imposed motions and settings, such as `sg.Displacement`
+    and `sg.Pressure`; with `sg.Dynamics` the answer is a motion, else static equilibrium. `sets`:
+    a dict from names to arrays of nodes, or to rules such as `{"z": [0, 0]}`; `element_sets`
     likewise for elements. All attributes may be changed; the mesh itself may not.
 
     `repr(body)` is its case file: `sg.Body.read` reads it, and so does `sandglass run`. Raises
@@ -147,7 +149,7 @@ class Body:
         text = toml_text(self._case_tables(**method))
         with shown(progress, "solve") as callback:
             answer = _sandglass.solve(*self._mesh(), text, given, callback)
-        return Solution(answer, self.name)
+        return Solution(answer, self.name, self._element_laws())
 
     def simulation(self, **settings):
         """An `sg.Simulation` of the body, to move and advance; `settings` are its keywords."""
@@ -184,8 +186,8 @@ class Body:
         """Writes the case file and, unless a generator or a file makes the mesh, its .h5."""
         file = path_text("file", file)
         mesh_file = os.path.splitext(file)[0] + ".h5"
-        if self.mesh._table is None:
-            self.mesh.save(mesh_file)
+        if self._mesh_with_laws()._table is None:
+            self._mesh_with_laws().save(mesh_file)
         text = toml_text(
             self._case_tables() | {"mesh": self._mesh_table(os.path.basename(mesh_file))}
         )
@@ -197,19 +199,29 @@ class Body:
         return toml_text(self._case_tables() | {"mesh": self._mesh_table(f"{self.name}.h5")})
 
     def _mesh_table(self, file):
-        return self.mesh._table or {"file": file}
+        return self._mesh_with_laws()._table or {"file": file}
 
     def _mesh(self):
-        mesh = self.mesh
-        if not isinstance(mesh, Mesh):
-            raise TypeError(f"mesh must be a sg.Mesh, but is a {type(mesh).__name__}")
+        mesh = self._mesh_with_laws()
         return mesh.points, mesh.cells, mesh.sets, mesh.element_sets
 
-    def _case_tables(self, **method):
-        """The tables of the case but [mesh]; `method` replaces keys of [method]."""
+    def _mesh_with_laws(self):
+        """The mesh, with the sets of laws that differ from element to element."""
+        new = self._element_laws().element_sets
+        own = self.mesh
+        return Mesh(own.points, own.cells, own.sets, own.element_sets | new) if new else own
+
+    def _element_laws(self):
         materials = self.material if _is_list(self.material) else [self.material]
         for each in materials:
             _require_table("material", each, ("material",))
+        if not isinstance(self.mesh, Mesh):
+            raise TypeError(f"mesh must be a sg.Mesh, but is a {type(self.mesh).__name__}")
+        return ElementLaws(materials, self.mesh)
+
+    def _case_tables(self, **method):
+        """The tables of the case but [mesh]; `method` replaces keys of [method]."""
+        laws = self._element_laws().laws
         if not _is_list(self.tables):
             raise TypeError(f"tables must be a list, but is a {type(self.tables).__name__}")
         for each in self.tables:
@@ -218,10 +230,10 @@ class Body:
         answer = "dynamic" if "dynamics" in present else "quasi-static"
         case = {"name": self.name, "requirement": self.requirement, "answer": answer}
         found = {"case": case}
-        if _is_list(self.material):
-            found["materials"] = [each._toml() for each in materials]
+        if _is_list(self.material) or len(laws) > 1:
+            found["materials"] = [each._toml() for each in laws]
         else:
-            found["material"] = materials[0]._toml()
+            found["material"] = laws[0]._toml()
         for kind in ("sets", "element_sets"):
             rules = plain(kind, getattr(self, kind))
             if rules:

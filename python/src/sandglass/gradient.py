@@ -10,7 +10,8 @@ class Gradient:
     def __init__(self, materials, stiffness, forces, imposed, points):
         self.materials = materials
         """A dict for each material of the body, in their order: from the parameters of its law, as
-        `help(sg.NeoHookean)` lists them, to derivatives; without the density."""
+        `help(sg.NeoHookean)` lists them, to derivatives; without the density. By a parameter that
+        is an array, one number for each of its elements, an array."""
         self.stiffness = stiffness
         """By a factor, at 1, of the stiffness of each element: law and hourglass control; (m,)."""
         self.forces = forces

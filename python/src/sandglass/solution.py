@@ -17,8 +17,8 @@ class Solution:
     those of the last one.
     """
 
-    def __init__(self, answer, name):
-        self._answer, self.name = answer, name
+    def __init__(self, answer, name, laws):
+        self._answer, self.name, self._laws = answer, name, laws
         points, cells, self.sets, self.element_sets = answer.mesh()
         self.points = _fixed(points)  #: (n, 3), m, undeformed; refined where the case refines
         self.cells = _fixed(cells)  #: (m, 8), VTK order
@@ -117,13 +117,15 @@ class Solution:
         """
         reactions = {} if reactions is None else reactions
         found = self._answer.gradient(displacement, reactions, points)
+        found["materials"] = self._laws.gathered(found["materials"])
         return Gradient(**{key: _fixed(value) for key, value in found.items()})
 
     def sensitivity(self, materials=None, *, forces=None, imposed=None):
         """The derivative of the displacements along a change of what the answer depends on; (n, 3).
 
         `materials`: the changes of the parameters of each material, a list of dicts such as
-        `[{"young_modulus": 1.0}, {}]`, or a dict for a body of one material. `forces`: those of
+        `[{"young_modulus": 1.0}, {}]`, or a dict for a body of one material; of a parameter that is
+        an array, an array or a number. `forces`: those of
         forces on nodes, N, (n, 3). `imposed`: those of imposed displacements, m, (n, 3), of which
         components that are free do not count. One linear problem. Raises like `gradient`.
         """
@@ -131,6 +133,8 @@ class Solution:
             materials = []
         elif hasattr(materials, "items"):
             materials = [materials]
+        if isinstance(materials, (list, tuple)):
+            materials = self._laws.spread(materials)
         return _fixed(self._answer.sensitivity(materials, forces, imposed))
 
     def to_vtk(self, frame=-1):

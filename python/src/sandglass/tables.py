@@ -105,7 +105,9 @@ def _class_name(declared):
     return "".join(word[:1].upper() + word[1:] for word in words)
 
 
-def _annotation(key):
+def _annotation(cls, key):
+    if cls._declared["table"] == "material" and key["type"] == "number" and key["count"] == 1:
+        return "float | Sequence[float] | NDArray[Any]"  # it may differ from element to element
     kind = _TYPES.get(key["type"], "dict[str, object]")
     kind = kind if key["count"] == 1 else "Sequence[float] | NDArray[Any]"
     # The strength of a control may be "auto", and an axis may be a vector.
@@ -167,7 +169,7 @@ def stub_text():
         text += f"\nclass {name}(Table):\n"
         fields, arguments = "", ""
         for key in cls._keys.values():
-            kind = _annotation(key) + ("" if key["required"] else " | None")
+            kind = _annotation(cls, key) + ("" if key["required"] else " | None")
             fields += f"    {key['name']}: {kind}\n"
             arguments += f", {key['name']}: {kind}" + ("" if key["required"] else " = ...")
         text += fields + f"    def __init__(self, *{arguments}) -> None: ...\n"
