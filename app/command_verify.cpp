@@ -130,7 +130,8 @@ int run_verify(const VerifyOptions& options) {
                         processor_named(options.device)};
   watch_for_interrupt();
   std::vector<Scene> scenes;
-  for (Case& description : named_cases(options.names, comparable, "golden or published value to be compared with")) {
+  for (Case& description :
+       named_cases(options.names, comparable, "golden or published value to be compared with")) {
     if (!options.json.empty()) require_place(options.json, description.files);
     scenes.push_back(understood_scene(std::move(description)));
   }

@@ -1,11 +1,11 @@
 #include "written/dialects.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/names.hpp"
 
 namespace sandglass {
 
@@ -66,9 +66,9 @@ const std::vector<Dialect>& dialects() {
 const Dialect& dialect_named(std::string_view name) {
   const auto found = std::ranges::find(dialects(), name, &Dialect::name);
   if (found != dialects().end()) return *found;
-  std::vector<std::string> known;
-  for (const Dialect& dialect : dialects()) known.emplace_back(dialect.name);
-  throw InputError(fmt::format("--dialect = '{}' is not known; {}", name, suggestion(name, known)));
+  std::vector<std::string_view> known;
+  for (const Dialect& dialect : dialects()) known.push_back(dialect.name);
+  throw InputError(fmt::format("--dialect = '{}' is not known; allowed: {}", name, fmt::join(known, ", ")));
 }
 
 }  // namespace sandglass

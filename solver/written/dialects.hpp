@@ -41,7 +41,7 @@ struct Dialect {
 /// The list of dialects. A new one is an entry.
 const std::vector<Dialect>& dialects();
 
-/// The dialect of this name. Throws InputError, which suggests a known one.
+/// The dialect of this name. Throws InputError, which lists all.
 const Dialect& dialect_named(std::string_view name);
 
 }  // namespace sandglass

@@ -13,8 +13,8 @@ namespace sandglass {
 /// What `verify` computes.
 struct VerifyPlan {
   Precision precision = Precision::double_precision;
-  int threads = 0;    ///< runs at the same time; 0: one per processor
-  bool costs = true;  ///< also measure the cost of steps
+  int threads = 0;                                       ///< runs at the same time; 0: one per processor
+  bool costs = true;                                     ///< also measure the cost of steps
   std::shared_ptr<const Processor> processor = nullptr;  ///< that computes forces; none: this one
 };
 
@@ -42,10 +42,10 @@ struct Verification {
 /// Whether a case has something to be compared with: a static answer, a stored golden, or published values.
 bool comparable(const Case& description);
 
-/// Computes every method on every scene that the processor does not refuse, methods with a kappa at `auto` and along the case's kappa curve, and
-/// compares with the references; then measures the cost of steps, except in cases with published values. Runs
-/// are independent and deterministic; only their order in time is not. Throws InputError for a reference that
-/// belongs to another case, ComputationError if interrupted.
+/// Computes every method on every scene that the processor does not refuse, methods with a kappa at `auto`
+/// and along the case's kappa curve, and compares with the references; then measures the cost of steps,
+/// except in cases with published values. Runs are independent and deterministic; only their order in time is
+/// not. Throws InputError for a reference that belongs to another case, ComputationError if interrupted.
 Verification verify(std::vector<Scene> scenes, const VerifyPlan& plan, const ProgressOf& progress);
 
 /// Writes the final state of every run as a result file to a folder, for pictures.
