@@ -9,7 +9,7 @@ import re
 import sys
 
 TARGETS = {
-    "solver": "base math material mesh forces element written assembly multigrid problem io solve"
+    "solver": "base math material mesh forces element written assembly device multigrid problem io solve"
     " sandglass",
     "suite": "counting comparison benchmark choice stability commands",
     "app": "app",

@@ -35,7 +35,10 @@ def test_bench_times_the_device_beside_this_processor(tmp_path):
 @pytest.mark.parametrize(
     "arguments, reason",
     [
-        (("run", "column", "--device", "cuda"), "'cuda' is no processor of this machine; allowed: cpu"),
+        (
+            ("run", "column", "--device", "cuda"),
+            "'cuda' is no processor of this machine; allowed: cpu",
+        ),
         (("run", "column", "--device", "opencl:99"), "is no processor of this machine"),
         (("run", "brain-hold", "-m", "tl-perturbation", "--device", "opencl"), "viscoelastic"),
         (("run", "pushed-ellipsoid", "-m", "t4-anp", "--device", "opencl"), "averages over nodes"),

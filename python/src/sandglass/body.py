@@ -114,9 +114,7 @@ class Body:
             raise _sandglass.InputError(f"{file}: {error}") from None
         return body
 
-    def solve(
-        self, *, threads=1, device="cpu", progress=None, sleep=None, against=None, **method
-    ):
+    def solve(self, *, threads=1, device="cpu", progress=None, sleep=None, against=None, **method):
         """The answer of the case: its static equilibrium, or its motion.
 
         `threads` do not change the answer. `device`: the processor that computes the forces of
