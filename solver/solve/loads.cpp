@@ -65,7 +65,8 @@ void Loads<Real>::take(const Rows<Real>& all, Rows<double>& loaded) const {
 
 template <class Real>
 void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
-  if (rows_.empty()) return;
+  const auto moves_nodes = [](const ContactForce* one) { return one->moves_nodes(); };
+  if (loads_.empty() && std::ranges::all_of(contacts_, moves_nodes)) return;  // no forces
   if (!all_dead_) {
     take(state.u, u_);
     take(state.increment, increment_);

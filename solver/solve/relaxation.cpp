@@ -164,7 +164,13 @@ class Search {
     std::optional<std::pair<State<Real>, std::vector<Real>>>
         best;  // since only rounding is left, during which a search may drift
     double least = INFINITY;
+    bool augmented = augmented_;
     while (!arrived() || settle()) {
+      if (std::exchange(augmented, augmented_) != augmented_) {
+        stagnation = Stagnation(epsilon, amplification_);
+        best.reset();
+        least = INFINITY;
+      }
       check();
       if (ended_) return false;
       if (!equilibrium_.step() && !stagnation.at_roundoff()) return false;
@@ -176,7 +182,7 @@ class Search {
       if (!stagnation.reached()) continue;
       // In single precision a second attempt gets closer.
       if (++stagnations > 1 || (std::is_same_v<Real, double> && at_rounding())) {
-        if (!settle()) break;
+        if (!settle() && !augment()) break;
         stagnations = 0;
       }
       stagnation = Stagnation(epsilon, amplification_);
@@ -252,14 +258,20 @@ class Search {
     return equilibrium_.at_rounding() && (residual < most_residual || equilibrium_.bears_nothing());
   }
 
+  /// Augments obstacles once, in the equilibrium at the full load; returns whether the search must continue.
+  bool augment() {
+    if (!load_levels_.full() || std::exchange(augmented_, true) || !body().augment_contact(true))
+      return false;
+    equilibrium_.start(load_levels_.effort());
+    return true;
+  }
+
   /// Whether the search may end: not with an inverted element, as another equilibrium may be near, and at the
   /// full load with the nodes that touch obstacles there, after one augmented step.
   bool arrived() {
     if (load_levels_.full() && equilibrium_.residual() < tolerance()) equilibrium_.update_contact();
     if (!(near() || (at_rounding() && equilibrium_.bears_nothing())) || !is_healthy(body())) return false;
-    if (!load_levels_.full() || std::exchange(augmented_, true) || !body().augment_contact(true)) return true;
-    equilibrium_.start(load_levels_.effort());
-    return false;
+    return !augment();
   }
 
   bool near() const {
