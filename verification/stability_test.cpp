@@ -147,7 +147,8 @@ TEST(Trial, shapes_body_and_motion_alike) {
 }
 
 TEST(Trial, keys_differ_where_answers_may) {
-  const Trial base{cantilever(), {"tl-none"}};
+  Trial base{cantilever(), {"tl-none"}};
+  base.description.forces.of<Obstacle>().push_back({.label = "plate"});  // of the axis of penalties
   const auto changed = [&](const std::function<void(Trial&)>& change) {
     Trial trial = base;
     change(trial);
