@@ -72,8 +72,8 @@ class PenaltyContact final : public ObstacleContact {
   }
 
   /// Curved obstacles have no larger stiffness in any direction, nor do springs along them. A spring that
-  /// only pushes returns a node with more than its energy if the step ends its contact too late: with steps of
-  /// 1.8 over its frequency, twice in the mean, of 0.9, 1.015 times, of 0.6, 1.001 times.
+  /// only pushes returns a node with more than its energy if the step ends its contact too late: with steps
+  /// of 1.8 over its frequency, twice in the mean, of 0.9, 1.015 times, of 0.6, 1.001 times.
   void add_rates(Factors /*largest*/, const std::vector<double>& masses,
                  std::vector<LoadRates>& rates) const override {
     for (const auto& [node, X, stiffness] : nodes_)
