@@ -336,9 +336,9 @@ point = [0.0, 0.0, 0.0]
 half_sizes = [0.1, 0.085, 0.08]
 )";
 
-/// The search is short where the nodes that touch are not known in advance. It takes 29 to 54 evaluations for
-/// the ball, 74 to 197 for the ellipsoid, and thousands if contact changes in every accelerated step, or if
-/// the multigrid cycle takes a lambda of Poisson's ratio 0.4999.
+/// The search is short where the nodes that touch are not known in advance: 74 to 197 evaluations for the
+/// ellipsoid, and thousands if contact changes in every accelerated step, or if the multigrid cycle takes the
+/// lambda of Poisson's ratio 0.4999.
 TEST(Contact, is_found_in_few_evaluations) {
   const TemporaryFolder folder;
   const auto evaluations = [&](const char* body, const char* ratio) {
