@@ -336,8 +336,9 @@ point = [0.0, 0.0, 0.0]
 half_sizes = [0.1, 0.085, 0.08]
 )";
 
-/// The search is short where the nodes that touch are not known in advance. It takes 29 to 54 evaluations for
-/// the ball, 36 and about 100 for the ellipsoid, and thousands if contact changes in every accelerated step.
+/// The search is short where the nodes that touch are not known in advance: 74 to 197 evaluations for the
+/// ellipsoid, and thousands if contact changes in every accelerated step, or if the multigrid cycle takes the
+/// lambda of Poisson's ratio 0.4999.
 TEST(Contact, is_found_in_few_evaluations) {
   const TemporaryFolder folder;
   const auto evaluations = [&](const char* body, const char* ratio) {
@@ -367,7 +368,7 @@ value = [0.0, 0.0, 0.0]
     return found.steps;
   };
   for (const char* ratio : {"0.3", "0.49", "0.4999"}) EXPECT_LT(evaluations(pressed_block, ratio), 150);
-  for (const char* ratio : {"0.3", "0.49"}) EXPECT_LT(evaluations(sliding_ellipsoid, ratio), 400);
+  for (const char* ratio : {"0.3", "0.49", "0.4999"}) EXPECT_LT(evaluations(sliding_ellipsoid, ratio), 400);
 }
 
 /// A surface of triangles that a case names presses as the box that it is.
