@@ -147,7 +147,8 @@ class Answer : public NeverUnmade {
   py::dict summary() const {
     require_made("Answer");
     py::dict named;
-    for (const auto& [name, value] : summary_) std::visit([&](const auto& v) { named[name] = v; }, value);
+    for (const auto& [name, value] : summary_)
+      std::visit([&, key = name](const auto& v) { named[key] = v; }, value);
     return named;
   }
 
