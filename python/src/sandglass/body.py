@@ -118,9 +118,10 @@ class Body:
         """The answer of the case: its static equilibrium, or its motion.
 
         `threads` do not change the answer. `device`: the processor that computes the forces of
-        elements, such as "opencl" (as `sandglass run --device`). `progress=True` shows how far it is; a callable gets the
-        completed share of the work now and then. `sleep`: leave out elements that would move by
-        less than this share of the largest imposed displacement, such as 0.001 or "0.1%".
+        elements, such as "opencl" (as `sandglass run --device`). `progress=True` shows how far it
+        is; a callable gets the completed share of the work now and then. `sleep`: leave out
+        elements that would move by less than this share of the largest imposed displacement, such
+        as 0.001 or "0.1%".
         `against="truth"`: the mesh is refined until the mean-dilatation element's answer, the
         default method then, is within the share `accuracy` of the exact one; `summary["error"]` of
         the solution is the distance of the answer from it. Other keywords replace those of the

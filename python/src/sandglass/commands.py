@@ -98,8 +98,8 @@ def verify(
 
     `precision`: "double" or "float"; limits are checked in double only. `device`: the processor
     that computes the forces of elements, such as "opencl"; what it cannot compute is left out.
-    `costs`: whether to measure the cost of steps on this processor. `threads`: runs at the same time, 0 for one per processor.
-    `results`: a folder for the final state of every run.
+    `costs`: whether to measure the cost of steps on this processor. `threads`: runs at the same
+    time, 0 for one per processor. `results`: a folder for the final state of every run.
 
     Returns a record: `records`, one for each case, method and kappa, with errors against `golden`
     and `truth` as fractions; `published`, those of cases with published values; `limits` of the
@@ -216,9 +216,10 @@ def bench(
 
     `elements`, `cubes`: also boxes of about these numbers of elements, or of cubes. `threads`,
     `methods`, `precision`: lists of those to time. `repetitions`: batches of about 0.5 ms for each
-    variant. `device`: also time another processor, such as "opencl". `rest`: times quasi-static cases until static equilibrium instead. `bodies`: times this
-    many bodies of each case side by side and one by one instead. A variant with a wrong result
-    gets no time. Returns a record with `records`.
+    variant. `device`: also time another processor, such as "opencl". `rest`: times quasi-static
+    cases until static equilibrium instead. `bodies`: times this many bodies of each case side by
+    side and one by one instead. A variant with a wrong result gets no time. Returns a record with
+    `records`.
     """
     if type(rest) is not bool:
         raise TypeError(f"rest must be True or False, but is a {type(rest).__name__}")
