@@ -8,7 +8,7 @@ import pytest
 
 import second_program
 from blocks import MATERIALS, distorted_block
-from case_file import Material
+from case_file import Gravity, Material
 from common.errors import InputError
 from hexahedra import Condition, HexMesh, Surface, traction
 from newton import solve
@@ -54,7 +54,7 @@ def loaded_block(stiff, only_normal):
         (traction(points, cells, top, (10.0, 20.0, 30.0), (5.0, 0.0, 1.0)),),
         (points[cells].mean(axis=1)[:, 0] > 0.5).astype(int),
         (Surface(side, pressure=200.0), Surface(foot, stiffness=5e4, only_normal=only_normal)),
-        (0.01, 0.02, -0.03),
+        (Gravity((0.01, 0.02, -0.03)),),
     )
     return mesh, [soft, stiff]
 

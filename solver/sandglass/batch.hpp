@@ -54,6 +54,7 @@ class Batch {
   /// See Simulation::reaction, N.
   std::array<double, 3> reaction(std::size_t body, const std::string& set) const;
 
+  /// The number of bodies.
   std::size_t bodies() const;
 
   /// The number of nodes of a body.
