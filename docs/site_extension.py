@@ -197,6 +197,8 @@ def machines():
     for pattern in ("reports/figures/*.json", "reports/maps/*.json"):
         for file in sorted(ROOT.glob(pattern)):
             data = json.loads(file.read_text())
+            if "processor" not in data:  # its figures are no times
+                continue
             cores = f", {data['cores']} cores" if "cores" in data else ""
             found[pattern].add((data["processor"] + cores, built(data)))
     for file in sorted(ROOT.glob("results/*.json")):

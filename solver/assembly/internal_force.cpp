@@ -69,7 +69,7 @@ AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& material
   AnyInternalForce own = own_internal_force(mesh, materials, choice);
   if (choice.processor == nullptr) return own;
   return std::visit(
-      [&](auto&& elements) -> AnyInternalForce {
+      [&](auto elements) -> AnyInternalForce {
         return choice.processor->forces(std::move(elements), mesh, materials, choice);
       },
       std::move(own));
