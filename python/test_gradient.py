@@ -281,6 +281,27 @@ def test_positions_of_nodes(method):
         assert (found * along).sum() == pytest.approx(own, rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    "load, name",
+    [
+        (sg.Gravity(value=(0, 0, -9.81)), "gravity"),
+        (sg.Force(set="head", total=(0.3, 0.2, 0.5)), "faces"),
+        (sg.Support(set="head", stiffness=1e5), "support"),
+    ],
+)
+def test_loads_that_change_with_the_points_are_refused(load, name):
+    """Weights and areas depend on the positions of nodes, which the derivative lacks."""
+    loads = [sg.Displacement(set="base", value=(0, 0, 0)), load]
+    law = sg.NeoHookean(young_modulus=3e4, poisson_ratio=0.45, density=1000)
+    sets = {"base": {"z": [0, 0]}, "head": {"z": [0.1, 0.1]}}
+    mesh = sg.Box(size=(0.04, 0.04, 0.1), elements=(2, 2, 4))
+    solution = sg.Body(mesh, law, loads, sets=sets).solve()
+    weights = np.ones_like(solution.points)
+    assert solution.gradient(weights).points is None
+    with pytest.raises(sg.InputError, match=f"points: .*{name}"):
+        solution.gradient(weights, points=True)
+
+
 def test_wrong_input_and_answers_without_derivatives():
     """Exceptions name the argument and the rule, or the reason."""
     materials = [sample("NeoHookean", np.random.default_rng(k)) for k in (1, 2)]

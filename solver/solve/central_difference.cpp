@@ -154,17 +154,15 @@ class CentralDifference {
   /// Whether the end is reached, up to the roundoff of a sum of steps.
   bool finished() const { return time() >= settings_.duration * (1.0 - 1e-12); }
 
-  /// Takes the next step. The last one is shortened so that the run ends at its duration.
+  /// Takes the next step.
   void advance() {
-    const double left = settings_.duration - time();
-    leapfrog_.advance(left < next_step_ * (1.0 + 1e-6) ? left : next_step_,
-                      [this](Body<Real>& body) { body.impose(curve(time()).value(), time()); });
+    leapfrog_.advance(due_step(), [this](Body<Real>& body) { body.impose(curve(time()).value(), time()); });
   }
 
   /// Takes the next step and, if the body is healthy after it, passes on the displacements that an observer
   /// wants within it. Returns whether it wants any.
   bool advance(Observer& observer) {
-    const bool asked = observer.next_sample() <= time() + next_step_ * (1.0 + 1e-9);
+    const bool asked = observer.next_sample() <= time() + due_step() * (1.0 + 1e-9);
     if (!asked) {
       advance();
       return false;
@@ -222,6 +220,12 @@ class CentralDifference {
   }
 
  private:
+  /// The step that is due (s): the last one ends at the duration.
+  double due_step() const {
+    const double left = settings_.duration - time();
+    return left < next_step_ * (1.0 + 1e-6) ? left : next_step_;
+  }
+
   /// The next of equal steps to the end, at most the steady step.
   void divide_what_is_left() {
     const double left = settings_.duration - time();

@@ -49,11 +49,11 @@ Answer moving_answer(const Model& model, Observer& observer) {
 
 Answer resting_answer(const Model& model, Observer& observer) {
   Relaxation relaxation = relax(model, observer);
-  Answer answer{.u = {std::move(relaxation.u)},
-                .energies = relaxation.energies,
+  Answer answer{.energies = relaxation.energies,
                 .steps = relaxation.steps,
                 .residual = relaxation.residual,
                 .seconds = relaxation.seconds};
+  if (!relaxation.u.empty()) answer.u = {std::move(relaxation.u)};  // empty: none at the first load level
   if (in_equilibrium(relaxation)) return answer;
   answer.failure = Finding::no_equilibrium;
   answer.status = outcome(relaxation, model.choice().precision);

@@ -23,10 +23,10 @@ class Body:
     `mesh`: an `sg.Mesh`, a generator such as `sg.Box`, the path of a mesh file, or an object of
     meshio or VTK. `material`: a law such as `sg.NeoHookean`, or several that name their
     `elements`; a number of a law may differ from element to element, as an array with a number for
-    each of its elements. `tables`: loads, imposed motions and settings, such as `sg.Displacement`
-    and `sg.Pressure`; with `sg.Dynamics` the answer is a motion, else static equilibrium. `sets`:
-    a dict from names to arrays of nodes, or to rules such as `{"z": [0, 0]}`; `element_sets`
-    likewise for elements. All attributes may be changed; the mesh itself may not.
+    each of its elements, in the order of the set. `tables`: loads, imposed motions and settings,
+    such as `sg.Displacement` and `sg.Pressure`; with `sg.Dynamics` the answer is a motion, else
+    static equilibrium. `sets`: a dict from names to arrays of nodes, or to rules such as
+    `{"z": [0, 0]}`; `element_sets` likewise for elements. All attributes may be changed; the mesh itself may not.
 
     `repr(body)` is its case file: `sg.Body.read` reads it, and so does `sandglass run`. Raises
     TypeError for arguments of another type, and InputError, with the words of the solver, for
@@ -49,7 +49,7 @@ class Body:
         self.mesh = Mesh.of(mesh)
         if arrays or more:
             own = self.mesh
-            self.mesh = Mesh(own.points, own.cells, own.sets | arrays, own.element_sets | more)
+            self.mesh = Mesh(own.points, own.cells, own.sets | arrays, own._as_given | more)
         self.material = material
         self.tables = list(tables) if _is_list(tables) else tables
         self.name = plain("name", name)
@@ -208,7 +208,7 @@ class Body:
         """The mesh, with the sets of laws that differ from element to element."""
         new = self._element_laws().element_sets
         own = self.mesh
-        return Mesh(own.points, own.cells, own.sets, own.element_sets | new) if new else own
+        return Mesh(own.points, own.cells, own.sets, own._as_given | new) if new else own
 
     def _element_laws(self):
         materials = self.material if _is_list(self.material) else [self.material]

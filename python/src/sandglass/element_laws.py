@@ -90,12 +90,12 @@ def _varies(material, key):
 
 
 def _elements(material, mesh, alone):
-    """The elements of a law, in their order."""
+    """The elements of a law, in the order in which its set was given."""
     name = material.elements
     if name is None and alone:
         return range(len(mesh.cells))
-    if name in mesh.element_sets:
-        return mesh.element_sets[name].tolist()
+    if name in mesh._as_given:
+        return mesh._as_given[name].tolist()
     raise _sandglass.InputError(
         f"{material._name()}: parameters that are arrays need `elements`, a set that is an array "
         f"of elements, but that is {name!r}"

@@ -25,16 +25,21 @@ class Mesh:
     """
 
     def __init__(self, points, cells, sets=None, element_sets=None):
+        given = _named("element_sets", element_sets)
         points, cells, sets, element_sets = _sandglass.checked_mesh(
-            points, cells, _named("sets", sets), _named("element_sets", element_sets)
+            points, cells, _named("sets", sets), given
         )
         self._set(points, cells, sets, element_sets)
+        for name, elements in element_sets.items():
+            if np.size(given[name]) == elements.size:  # none repeated
+                self._as_given[name] = np.array(given[name]).ravel()
 
     def _set(self, points, cells, sets, element_sets):
         self.points = points  #: (n, 3), m
         self.cells = cells  #: (m, 8)
         self.sets = sets  #: nodes, by the names of sets
-        self.element_sets = element_sets  #: elements, by the names of sets
+        self.element_sets = element_sets  #: elements, by the names of sets, sorted
+        self._as_given = dict(element_sets)  # in the order of numbers of laws
         self._table = None  # the table [mesh] of a case with this mesh
         for array in (points, cells, *sets.values(), *element_sets.values()):
             array.flags.writeable = False

@@ -12,9 +12,9 @@ from sandglass.gradient import Gradient
 class Solution:
     """The answer of `Body.solve`. Arrays are read-only, in the numbering of the mesh, in SI units.
 
-    A static answer has two frames, or more with load levels: the undeformed body first, the answer
-    last. A motion has the frames that its `sg.Dynamics` asks for. Attributes without a frame are
-    those of the last one.
+    A static answer has a frame for each load level of the search: the undeformed body first, the
+    answer last. A motion has the frames that its `sg.Dynamics` asks for. Attributes without a frame
+    are those of the last one.
     """
 
     def __init__(self, answer, name, laws):
