@@ -30,7 +30,8 @@ class Batch:
     def impose(self, factors):
         """Loads and imposed displacements at a load factor of each body, (bodies,).
 
-        Before the first call there are none. They are reached at the end of the next `advance`; see `Simulation.impose`.
+        Before the first call there are none. They are reached at the end of the next `advance`; see
+        `Simulation.impose`.
         """
         self._batch.impose(self._numbers("factors", factors))
 
@@ -57,11 +58,11 @@ class Batch:
     def run(self, seconds, frames, *, stiffness=None, factors=None, driven=None):
         """Moves all bodies through a number of equal frames; returns displacements, m.
 
-        `stiffness`: factors of all moduli, (bodies,). `factors`: load factors, (bodies,), which
-        are reached linearly at the end, or (bodies, frames), at the end of each frame; without them
-        no load acts. `driven`: a
-        dict from driven sets to targets at the end of each frame, (bodies, frames, 3) or (bodies,
-        frames, nodes of the set, 3), m. Other parameters of laws are the same for all bodies.
+        `stiffness`: factors of all moduli, (bodies,). `factors`: load factors, (bodies,), which are
+        reached linearly at the end, or (bodies, frames), at the end of each frame; without them no
+        load acts. `driven`: a dict from driven sets to targets at the end of each frame, (bodies,
+        frames, 3) or (bodies, frames, nodes of the set, 3), m. Other parameters of laws are the
+        same for all bodies.
 
         Returns an array (bodies, frames, n, 3), in the numbering of the mesh.
         """

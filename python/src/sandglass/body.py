@@ -21,12 +21,12 @@ class Body:
     """A body in a case: what `sandglass run` computes, made in Python.
 
     `mesh`: an `sg.Mesh`, a generator such as `sg.Box`, the path of a mesh file, or an object of
-    meshio or VTK. `material`: a law such as `sg.NeoHookean`, or several that name their
-    `elements`; a number of a law may differ from element to element, as an array with a number for
-    each of its elements, in the order of the set. `tables`: loads, imposed motions and settings,
-    such as `sg.Displacement` and `sg.Pressure`; with `sg.Dynamics` the answer is a motion, else
-    static equilibrium. `sets`: a dict from names to arrays of nodes, or to rules such as
-    `{"z": [0, 0]}`; `element_sets` likewise for elements. All attributes may be changed; the mesh itself may not.
+    meshio or VTK. `material`: a law such as `sg.NeoHookean`, or several that name their `elements`;
+    a number of a law may differ from element to element, as an array with a number for each of its
+    elements, in the order of the set. `tables`: loads, imposed motions and settings, such as
+    `sg.Displacement` and `sg.Pressure`; with `sg.Dynamics` the answer is a motion, else static
+    equilibrium. `sets`: a dict from names to arrays of nodes, or to rules such as `{"z": [0, 0]}`;
+    `element_sets` likewise for elements. All attributes may be changed; the mesh itself may not.
 
     `repr(body)` is its case file: `sg.Body.read` reads it, and so does `sandglass run`. Raises
     TypeError for arguments of another type, and InputError, with the words of the solver, for
