@@ -135,6 +135,8 @@ def test_arrays_meshio_vtk_and_files_make_the_same_body(solution, tmp_path):
     element_sets = {"low": np.arange(8)}
     mesh = sg.Mesh(solution.points, solution.cells, sets, element_sets)
     flags = {name: np.isin(np.arange(45), nodes) * 1 for name, nodes in sets.items()}
+    masks = {name: flag == 1 for name, flag in flags.items()}
+    masked = sg.Mesh(solution.points, solution.cells, masks, {"low": np.arange(16) < 8})
     lone = np.vstack([solution.points, [[9, 9, 9]]])  # a node of no cell is left out
     foreign = meshio.Mesh(lone, [("line", [[0, 45]]), ("hexahedron", solution.cells)])
     foreign.point_sets, foreign.cell_sets = sets, {"low": [np.array([], int), np.arange(8)]}
@@ -149,7 +151,7 @@ def test_arrays_meshio_vtk_and_files_make_the_same_body(solution, tmp_path):
     low.SetName("low")
     grid.GetCellData().AddArray(low)
     mesh.save(tmp_path / "mesh.h5")
-    for source in (mesh, foreign, grid, tmp_path / "mesh.h5"):
+    for source in (mesh, masked, foreign, grid, tmp_path / "mesh.h5"):
         laws = [sg.NeoHookean(**LAW), sg.NeoHookean(**LAW, elements="low")]
         made = sg.Body(source, laws, loads())
         found = (

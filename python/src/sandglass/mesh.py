@@ -19,15 +19,16 @@ class Mesh:
     """Hexahedra in memory, with named sets of nodes and of elements.
 
     `points`: (n, 3) in m. `cells`: (m, 8) integers, the nodes of each hexahedron in VTK order,
-    counted from 0. `sets`, `element_sets`: dicts from names to arrays of nodes, or of elements.
+    counted from 0. `sets`, `element_sets`: dicts from names to arrays of nodes, or of elements, or
+    to masks: arrays of bool with an entry for each node, or element.
     Raises TypeError for arrays of another type and InputError for other shapes, unknown nodes,
     nodes without cell and points that are not finite.
     """
 
     def __init__(self, points, cells, sets=None, element_sets=None):
-        given = _named("element_sets", element_sets)
+        given = _without_masks(_named("element_sets", element_sets), cells)
         points, cells, sets, element_sets = _sandglass.checked_mesh(
-            points, cells, _named("sets", sets), given
+            points, cells, _without_masks(_named("sets", sets), points), given
         )
         self._set(points, cells, sets, element_sets)
         for name, elements in element_sets.items():
@@ -197,6 +198,17 @@ def _named(argument, sets):
         if not isinstance(name, str):
             raise TypeError(f"{argument}: the name {name!r} must be a text")
     return dict(sets)
+
+
+def _without_masks(sets, rows):
+    """The sets, masks as the numbers of the rows for which they are true."""
+    shape = np.shape(rows)[:1]
+
+    def members(given):
+        is_mask = getattr(given, "dtype", None) == bool and np.shape(given) == shape
+        return np.flatnonzero(given) if is_mask else given
+
+    return {name: members(given) for name, given in sets.items()}
 
 
 def mesh_of_case(table):

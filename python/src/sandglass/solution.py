@@ -111,10 +111,13 @@ class Solution:
         adjoint problem for all parameters together, which costs about as much as `solve`. Dead
         loads and springs may act. Levels of adaptive elements count as constant.
 
-        Returns an `sg.Gradient`. Raises InputError where forces have no potential (Updated
+        Returns an `sg.Gradient`. Raises InputError with `points` where gravity, forces on faces or
+        springs act, as these depend on the positions; where forces have no potential (Updated
         Lagrangian methods, pressures), with obstacles, in single precision and for motions;
         ComputationError for an answer that is not stable.
         """
+        if displacement is None and reactions is None:
+            raise _sandglass.InputError("gradient needs displacement, reactions, or both")
         reactions = {} if reactions is None else reactions
         found = self._answer.gradient(displacement, reactions, points)
         found["materials"] = self._laws.gathered(found["materials"])
@@ -125,9 +128,9 @@ class Solution:
 
         `materials`: the changes of the parameters of each material, a list of dicts such as
         `[{"young_modulus": 1.0}, {}]`, or a dict for a body of one material; of a parameter that is
-        an array, an array or a number. `forces`: those of
-        forces on nodes, N, (n, 3). `imposed`: those of imposed displacements, m, (n, 3), of which
-        components that are free do not count. One linear problem. Raises like `gradient`.
+        an array, an array or a number. `forces`: those of forces on nodes, N, (n, 3). `imposed`:
+        those of imposed displacements, m, (n, 3), of which components that are free do not count.
+        One linear problem. Raises like `gradient`.
         """
         if materials is None:
             materials = []
