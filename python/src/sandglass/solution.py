@@ -116,8 +116,6 @@ class Solution:
         Lagrangian methods, pressures), with obstacles, in single precision and for motions;
         ComputationError for an answer that is not stable.
         """
-        if displacement is None and reactions is None:
-            raise _sandglass.InputError("gradient needs displacement, reactions, or both")
         reactions = {} if reactions is None else reactions
         found = self._answer.gradient(displacement, reactions, points)
         found["materials"] = self._laws.gathered(found["materials"])
