@@ -34,7 +34,6 @@ struct OpenCl {
   decltype(&clReleaseContext) release_context = find("clReleaseContext");
   decltype(&clCreateCommandQueue) create_queue = find("clCreateCommandQueue");
   decltype(&clReleaseCommandQueue) release_queue = find("clReleaseCommandQueue");
-  decltype(&clFinish) finish = find("clFinish");
   decltype(&clCreateBuffer) create_buffer = find("clCreateBuffer");
   decltype(&clReleaseMemObject) release_buffer = find("clReleaseMemObject");
   decltype(&clEnqueueWriteBuffer) write = find("clEnqueueWriteBuffer");
@@ -141,15 +140,11 @@ void OpenClDevice::require_room(std::span<const std::size_t> bytes) const {
                     of_one = number_of(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   if (all <= room && largest <= of_one) return;
   throw InputError(
-      fmt::format("device: '{}' has {:.3g} GB of memory, at most {:.3g} GB of them in one piece; "
-                  "this needs {:.3g} GB, {:.3g} GB of them in one piece; allowed: a smaller mesh, "
+      fmt::format("device: '{}' has {:.3g} GB of memory, at most {:.3g} GB in one piece; "
+                  "this needs {:.3g} GB, {:.3g} GB in one piece; allowed: a smaller mesh, "
                   "single precision, or another device",
                   name_, 1e-9 * static_cast<double>(room), 1e-9 * static_cast<double>(of_one),
                   1e-9 * static_cast<double>(all), 1e-9 * static_cast<double>(largest)));
-}
-
-void OpenClDevice::finish() const {
-  require_success(opencl().finish(queue_.get()), name_, "a computation");
 }
 
 OpenClBuffer::OpenClBuffer(const OpenClDevice& device, std::size_t bytes) : device_(device) {

@@ -9,10 +9,10 @@
 #include <type_traits>
 #include <vector>
 
-/// OpenCL 1.2, whose library is loaded when the first device is opened: programs that use none need none.
+/// OpenCL 1.2. Its library is loaded at run time, when devices are first listed.
 namespace sandglass {
 
-/// A processor that OpenCL reaches.
+/// A device that OpenCL lists.
 struct OpenClDeviceName {
   std::string name;
   bool has_double;
@@ -20,7 +20,7 @@ struct OpenClDeviceName {
   cl_device_id device;
 };
 
-/// All of them, graphics cards first. Empty without the library.
+/// All devices, graphics cards first. Empty without the library.
 std::vector<OpenClDeviceName> opencl_devices();
 
 /// An open device with a queue that works in order.
@@ -33,9 +33,6 @@ class OpenClDevice {
 
   /// Throws InputError if the device cannot keep buffers of so many bytes at the same time.
   void require_room(std::span<const std::size_t> bytes) const;
-
-  /// Waits until all work is done. Throws ComputationError if any failed.
-  void finish() const;
 
  private:
   friend class OpenClBuffer;
