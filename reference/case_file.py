@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.case_tables import read_tables
 from common.errors import InputError, suggestion
-from common.files import read_toml
 from common.records import NUMBER, entries, entry
 from laws import LAWS, VOLUMES, parameters
 from load_curve import CURVE, factor_and_curve
@@ -162,24 +162,6 @@ class Case:
     obstacles: tuple = ()
 
 
-def read_tables(path):
-    """The tables of every case in a file, with variants merged in: case name -> dict.
-
-    path: str or Path of a TOML file. A file without [variants] has one case. Raises InputError.
-    """
-    tables = read_toml(path)
-    family = entry(f"{path}: case", entry(path, tables, "case", dict), "name", str)
-    cases = {family: tables}
-    for axis in tables.pop("variants", {}).values():
-        longer = {}
-        for name, so_far in cases.items():
-            for variant in axis:
-                merged = _merged(so_far, {k: v for k, v in variant.items() if k != "name"})
-                longer[f"{name}-{variant['name']}"] = merged
-        cases = longer
-    return cases
-
-
 def find_case(folder, name):
     """The file in a folder of cases that defines the case of this name, or None."""
     for path in sorted(folder.glob("*.toml")):
@@ -283,15 +265,6 @@ def _material(where, table):
     return Material(law, found, density, volumetric)
 
 
-def _merged(tables, changes):
-    """Tables with changes applied: nested tables are merged, other values replaced."""
-    merged = dict(tables)
-    for key, value in changes.items():
-        both = isinstance(value, dict) and isinstance(tables.get(key), dict)
-        merged[key] = _merged(tables[key], value) if both else value
-    return merged
-
-
 def _displacement(where, table):
     """A [[displacement]] table as a Displacement. where: file, key and index of it."""
     found = _read(where, table, set=str, value=tuple, components="xyz")
@@ -363,7 +336,7 @@ def _obstacle(where, table, moving):
         raise InputError(f"{where}.shape = {shape!r} is not known; {suggestion(shape, SHAPES)}")
     own = {key: float if key == "radius" else tuple for key in shape_keys(shape)}
     others = (*CURVE, "name", "shape", "method", "friction", *own)
-    keys = {"displacement": (0.0, 0.0, 0.0), "inside": False, "penalty": 100.0}
+    keys = {"displacement": (0.0, 0.0, 0.0), "inside": False, "penalty": 30.0}
     name, moved, *rest = _read(where, table, *others, set=str, **keys).values()
     factor, _ = factor_and_curve(where, table, moving)
     own = _read(where, table, *table, **own)

@@ -35,23 +35,24 @@ class Loads:
 
     mesh: HexMesh. materials: list of Material. displacement: dolfinx function, m. cell_nodes: (m,
     8 or 10) node numbers in the space's order of cells and nodes. degree: of the quadrature.
-    Attributes: densities (m,) of the cells in the order of the space, kg/m^3; attached (N,) masses
-    of the dofs, kg, beside those of cells; contacts, a Contact for each obstacle; symmetric
-    (whether the tangent is).
+    Attributes: masses (N,) of the dofs, kg, see _masses; contacts, a Contact for each obstacle;
+    symmetric (whether the tangent is).
     """
 
     def __init__(self, mesh, materials, displacement, cell_nodes, degree):
         space = displacement.function_space
         domain, test = space.mesh, ufl.TestFunction(space)
-        self.densities = _per_cell(domain, mesh, [m.density for m in materials])
+        densities = _per_cell(domain, mesh, [m.density for m in materials])
         self._dead = []  # (forces (N,), curve)
         for traction in mesh.tractions:
             measure = _measure(domain, traction.nodes, cell_nodes, degree)
             self._dead.append((_traction_forces(traction, test, measure), traction.curve))
-        self.attached = _attached(mesh, space, cell_nodes)
+        lumped = len(cell_nodes[0]) == 8
+        self.masses = _masses(mesh, space, cell_nodes, densities if lumped else None, degree)
         for one in mesh.gravity:
-            weight = _weight(one.value, self.densities, space, test, degree)
-            weight += self.attached * np.tile(one.value, len(weight) // 3)
+            weight = self.masses * np.tile(one.value, len(self.masses) // 3)
+            if not lumped:
+                weight += _weight(one.value, densities, space, test, degree)
             self._dead.append((weight, one.curve))
         self._factors = []  # (constant, curve) of each pressure
         F = ufl.Identity(3) + ufl.grad(displacement)
@@ -184,13 +185,22 @@ def _traction_forces(traction, test, measure):
     return fem.assemble_vector(fem.form(ufl.inner(t, test) * measure)).array.copy()
 
 
-def _attached(mesh, space, cell_nodes):
-    """The masses (N,) of the displacement dofs, kg, that are attached to the nodes of a HexMesh."""
+def _masses(mesh, space, cell_nodes, densities, degree):
+    """The masses (N,) of the displacement dofs, kg: those attached to the nodes of a HexMesh and,
+    with densities (m,) of hexahedra, an eighth of each one's own at each of its vertices, as in
+    solver/problem/masses.cpp."""
     blocks = np.zeros(cell_nodes.max() + 1, dtype=int)
     blocks[cell_nodes] = space.dofmap.list.array.reshape(cell_nodes.shape)
     of_blocks = np.zeros(space.dofmap.index_map.size_local)
     for one in mesh.masses:
         of_blocks[blocks[np.flatnonzero(one.nodes)]] += one.total / one.nodes.sum()
+    if densities is not None:
+        test = ufl.TestFunction(fem.FunctionSpace(space.mesh, ("DG", 0)))
+        form = fem.form(
+            test * ufl.dx(metadata={"quadrature_degree": degree}), jit_params=JIT_OPTIONS
+        )
+        volumes = fem.assemble_vector(form).array
+        np.add.at(of_blocks, blocks[cell_nodes], (densities * volumes / 8)[:, None])
     return np.repeat(of_blocks, 3)
 
 

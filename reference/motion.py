@@ -37,7 +37,7 @@ class MovingProblem(MixedProblem):
     def __init__(self, mesh, materials, motion, velocity):
         super().__init__(mesh, materials)
         self._motion = motion
-        self._masses = self.lumped_masses()
+        self._masses = self.loads.masses
         self._v = self.dofs_of(velocity)
         self._v[self.fixed] = 0.0  # imposed components have no inertia
         self._start = np.zeros_like(self._v)  # displacement at the start of the step

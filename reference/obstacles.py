@@ -123,7 +123,7 @@ class Obstacle:
     parameters: dict
     displacement: tuple = (0.0, 0.0, 0.0)
     inside: bool = False
-    penalty: float = 100.0
+    penalty: float = 30.0
     limit: bool = True
 
     def gap(self, x, load):

@@ -85,19 +85,6 @@ class MixedProblem(Problem):
         """The current factor of a load: in a quasi-static case no load has its own curve."""
         return self.load
 
-    def lumped_masses(self):
-        """Masses (N,) of the displacement dofs, kg: each cell gives an eighth of its own to each
-        vertex, as solver/problem/masses.cpp does, beside what is attached to the vertices. For
-        elements whose only nodes are vertices."""
-        space = self.displacement.function_space
-        test = ufl.TestFunction(fem.FunctionSpace(space.mesh, ("DG", 0)))
-        measure = ufl.dx(metadata={"quadrature_degree": QUADRATURE})
-        volumes = fem.assemble_vector(fem.form(test * measure, jit_params=JIT_OPTIONS)).array
-        masses = np.zeros(len(self._vertex_block))
-        of_cells = (self.loads.densities * volumes / 8)[:, None]
-        np.add.at(masses, space.dofmap.list.array.reshape(len(volumes), 8), of_cells)
-        return np.repeat(masses, 3) + self.loads.attached
-
     def dofs_of(self, nodal):
         """Values (n, 3) at the nodes of the HexMesh as values of the displacement dofs (N,)."""
         dofs = np.zeros((self.displacement.x.array.size // 3, 3))

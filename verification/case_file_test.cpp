@@ -256,6 +256,24 @@ struct HashedCase {
   }
 };
 
+/// A force whose load curve, if it has one, has points.
+template <class Force>
+Force with_a_curve() {
+  Force force;
+  if constexpr (requires { force.curve; }) force.curve = {.times = {0.0, 1.0}, .factors = {0.0, 1.0}};
+  return force;
+}
+
+/// Whether a force's parameter changes how accurately an answer is computed, but not the exact answer.
+template <class Force>
+bool is_numerical(std::string_view parameter) {
+  if constexpr (requires { Force::numerical; }) {
+    return std::ranges::find(Force::numerical, parameter) != Force::numerical.end();
+  } else {
+    return false;
+  }
+}
+
 TEST(CaseFile, hash_follows_every_declared_field_that_decides_the_answer) {
   const auto always = [](std::string_view /*name*/) { return true; };
   for (const bool is_static : {true, false}) {
@@ -271,11 +289,11 @@ TEST(CaseFile, hash_follows_every_declared_field_that_decides_the_answer) {
           Law{}, [](Case& c, const Law& law) { c.materials.front().law = law; }, always);
     });
     for_each_type(Forces{}, [&]<class Force>() {
-      Force force;
-      if constexpr (requires { force.curve; }) force.curve = {.times = {0.0, 1.0}, .factors = {0.0, 1.0}};
       hashed.expect(
-          force, [](Case& c, const Force& one) { c.forces.of<Force>() = {one}; },
-          [&](std::string_view name) { return !is_static || name != Force::only_in_motion; });
+          with_a_curve<Force>(), [](Case& c, const Force& one) { c.forces.of<Force>() = {one}; },
+          [&](std::string_view name) {
+            return !is_numerical<Force>(name) && (!is_static || name != Force::only_in_motion);
+          });
     });
     Refinement split;
     split.numbers = {1};
@@ -295,6 +313,21 @@ TEST(CaseFile, hash_follows_every_declared_field_that_decides_the_answer) {
         RelaxationSettings{}, [](Case& c, const RelaxationSettings& settings) { c.relaxation = settings; },
         [](std::string_view /*name*/) { return false; });
   }
+}
+
+TEST(CaseFile, numerical_settings_follow_what_the_hash_leaves_out) {
+  for_each_type(Forces{}, []<class Force>() {
+    const auto settings = [](const Force& force) {
+      HashedCase hashed;
+      hashed.description.forces.of<Force>() = {force};
+      return numerical_settings(hashed.description);
+    };
+    const auto force = with_a_curve<Force>();
+    for_each_change(force, [&](std::string_view name, const Force& changed) {
+      EXPECT_EQ(settings(changed) != settings(force), is_numerical<Force>(name))
+          << Force::name << "." << name;
+    });
+  });
 }
 
 /// Fields of tables without declared parameters, each changed in the text of a case.

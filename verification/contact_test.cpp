@@ -102,6 +102,32 @@ Vector start_of(const Obstacle& obstacle) {
   return middle;
 }
 
+/// The nearest point lies on the surface, and the normal there is along the way to it. Points are near the
+/// surface, far outside, and inside, where the nearest point may be far.
+TEST(Contact, distance_from_an_ellipsoid_is_to_the_nearest_point) {
+  const EllipsoidShape shape{{0.1, -0.2, 0.3}, {0.10, 0.07, 0.08}};
+  RandomGeometry random(7);
+  for (int trial = 0; trial < 3000; ++trial) {
+    Vector from{}, at_surface{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      from[i] = random.uniform(-0.15, 0.15);
+      at_surface[i] = from[i] / shape.semi_axes[i];
+    }
+    const double factor = 1.0 + random.uniform(-1e-4, 1e-4);
+    for (std::size_t i = 0; trial % 2 == 0 && i < 3; ++i) from[i] *= factor / length(at_surface);
+    const Gap gap = shape.at(sum(shape.centre, 1.0, from));
+    const Vector nearest = sum(from, -gap.distance, gap.normal);
+    Vector scaled{}, gradient{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      scaled[i] = nearest[i] / shape.semi_axes[i];
+      gradient[i] = scaled[i] / shape.semi_axes[i];
+    }
+    EXPECT_NEAR(length(scaled), 1.0, 1e-12);
+    EXPECT_NEAR(dot(gradient, gap.normal), length(gradient), 1e-12 * length(gradient));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_GE(nearest[i] * from[i], 0.0);  // not the farthest
+  }
+}
+
 /// Forces are minus the derivative of the potential: for every shape, from both sides. The stiffness along
 /// the normal is the derivative of the force. Differences over h of functions that bend within centimetres
 /// are accurate to h^2 times 1/cm^2.

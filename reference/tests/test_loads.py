@@ -91,6 +91,19 @@ def test_springs_carry_the_weight(make, only_normal):
     assert (u[:, 2] < 0).all()
 
 
+def test_hexahedra_fall_without_deforming():
+    """Each vertex of the frustum of a pyramid has an eighth of its mass, and the weight of that.
+    The integrals of the shape functions are larger at the larger face."""
+    points, cells, _ = distorted_block(n=1, distortion=0.0)
+    points[_at(points, 2, 1.0), :2] *= 0.5
+    mesh = HexMesh(points, cells, (), gravity=(Gravity((0.0, 2.0, -10.0)),))
+    loads = MixedProblem(mesh, [STIFF]).loads
+    eighth = 2000.0 * (1.0 + 0.5 + 0.25) / 3 / 8
+    assert np.abs(loads.masses / eighth - 1).max() < 1e-12
+    weight = -loads.forces(lambda _curve: 1.0).reshape(-1, 3)
+    assert np.abs(weight / eighth - [0.0, 2.0, -10.0]).max() < 1e-11
+
+
 def test_loads_of_a_case_at_the_end_of_their_curves(tmp_path):
     path = tmp_path / "loads.toml"
     text = """

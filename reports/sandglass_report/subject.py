@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 
 from common.errors import InputError
-from common.files import read_toml
+from common.case_tables import read_tables
 from common.result_file import text_of
 from sandglass_report.accuracy import accuracy, ordered_profile
 from sandglass_report.verdicts import REFERENCES
@@ -50,7 +50,7 @@ class Subject:
     sets: dict = field(default_factory=dict)
     golden: Reference | None = None
     truth: Reference | None = None
-    surface_loads: bool = False  # pressures and supports, whose operations belong to no method
+    surface_loads: bool = False  # whether there are any, whose operations belong to no method
     motion: MotionGolden | None = None  # of a case in motion, which has no single golden field
     displacements: dict = field(default_factory=dict)  # (method, kappa or None) -> (n, 3), m
     hourglass: dict = field(default_factory=dict)  # the same -> energy density (m,), J/m^3
@@ -100,13 +100,12 @@ def read_subjects(verdicts, cases, references, results, files=()):
 
 
 def _case_files(folder, files=()):
-    """Case name -> (path, tables) for every case file in the folder, and for the others."""
+    """Case name -> (path, tables) for every case of the files in the folder, and of the others."""
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder of cases")
     found = {}
     for path in (*sorted(folder.glob("*.toml")), *files):
-        tables = read_toml(path)
-        found[tables.get("case", {}).get("name")] = (path, tables)
+        found |= {name: (path, tables) for name, tables in read_tables(path).items()}
     return found
 
 
@@ -146,7 +145,7 @@ def _read_subject(verdicts, name, case_files, references, results):
         displacements=displacements,
         hourglass=hourglass,
         hashes=hashes,
-        surface_loads=any(tables.get(key) for key in ("pressure", "support")),
+        surface_loads=any(tables.get(key) for key in ("pressure", "support", "obstacle")),
         motion=motion,
         **mesh,
         **stored_answers,

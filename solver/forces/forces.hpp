@@ -18,7 +18,8 @@ namespace sandglass {
 /// table [[name]] of a case file, and has: name, summary, and parameters(), whose texts name node sets;
 /// only_in_motion, the parameter that has no effect in static cases, if any; by_mass, whether it depends on
 /// the density; and resolve(resolver), which adds its BodyForce on a mesh. The optional `one_of` names
-/// parameters of which at least one must be given. All loads are proportional to the factor of their curve.
+/// parameters of which at least one must be given, the optional `numerical` those that change how accurately
+/// an answer is computed, but not the exact answer. All loads are proportional to the factor of their curve.
 using Forces = TypeList<PointMass, DeadForce, Pressure, Gravity, Support, Obstacle>;
 
 /// The forces of a case: its tables of each kind, in their order.

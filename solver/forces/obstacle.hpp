@@ -14,6 +14,7 @@ struct Obstacle {
   static constexpr std::string_view summary = "a rigid obstacle that the body touches";
   static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = false;
+  static constexpr std::array<std::string_view, 2> numerical{"penalty", "method"};
 
   enum class Shape { plane, sphere, capsule, cylinder, box, ellipsoid, surface };
   friend constexpr std::array<std::string_view, 7> words_of(Shape /*type*/) {
@@ -39,8 +40,8 @@ struct Obstacle {
   bool inside = false;    ///< whether the body is inside of it, as in a cavity
   Vector displacement{};  ///< at the factor one, m
   LoadCurve curve = {};
-  double friction = 0.0;   ///< Coulomb's coefficient
-  double penalty = 100.0;  ///< see parameters
+  double friction = 0.0;  ///< Coulomb's coefficient
+  double penalty = 30.0;  ///< see parameters
   Method method = Method::kinematic;
 
   static constexpr auto parameters() {

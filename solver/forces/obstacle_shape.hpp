@@ -75,30 +75,36 @@ struct EllipsoidShape {
   double half_thickness() const { return *std::ranges::min_element(semi_axes); }
 
   /// The nearest point of the surface is y = a^2 x / (a^2 + t), by components, for the t (m^2) that puts it
-  /// on the surface; the distance is t |y / a^2|. Newton's method for t ascends from a lower bound, as the
-  /// equation is convex and falls. Points near the middle of the ellipsoid, which have several nearest
-  /// points, get any of them.
+  /// on the surface; the distance is t |y / a^2|. The equation for t is convex and falls, so that Newton's
+  /// method ascends after its first step, which must not pass a lower bound of t. It starts from zero, the
+  /// answer on the surface. Points near the middle of the ellipsoid, which have several nearest points, get
+  /// any of them.
   Gap at(const Vector& x) const {
     constexpr int most = 60;
-    constexpr double rounding = 1e-15;
+    constexpr double rounding = 1e-15, nearly = 1e-10;
     const Vector from = difference(x, centre);
-    double t = -INFINITY, smallest = INFINITY;
+    double least = -INFINITY, smallest = INFINITY;
     for (std::size_t i = 0; i < 3; ++i) {
-      t = std::max(t, semi_axes[i] * (std::abs(from[i]) - semi_axes[i]));
+      least = std::max(least, semi_axes[i] * (std::abs(from[i]) - semi_axes[i]));
       smallest = std::min(smallest, semi_axes[i]);
     }
+    double t = std::max(least, 0.0);
     Vector slope{};  // y / a^2
+    bool arrived = false;
     for (int n = 0; n < most; ++n) {
       double excess = -1.0, derivative = 0.0;
       for (std::size_t i = 0; i < 3; ++i) {
-        const double a2 = semi_axes[i] * semi_axes[i], sum = std::max(a2 + t, rounding * a2);
-        slope[i] = from[i] / sum;
+        const double a2 = semi_axes[i] * semi_axes[i], inverse = 1.0 / std::max(a2 + t, rounding * a2);
+        slope[i] = from[i] * inverse;
         excess += a2 * slope[i] * slope[i];
-        derivative += 2.0 * a2 * slope[i] * slope[i] / sum;
+        derivative += 2.0 * a2 * slope[i] * slope[i] * inverse;
       }
-      const double step = derivative > 0.0 ? excess / derivative : 0.0;
-      if (std::abs(step) <= rounding * smallest * smallest) break;
-      t += step;
+      if (arrived) break;
+      const double step = derivative > 0.0 ? excess / derivative : 0.0, before = t;
+      t = std::max(t + step, least);
+      const double moved = std::abs(t - before) / (smallest * smallest);
+      if (moved <= rounding) break;
+      arrived = moved <= nearly;  // what remains is its square
     }
     const double size = std::sqrt(dot(slope, slope));
     return {size > 0.0 ? t * size : -smallest, direction_of(slope, size)};

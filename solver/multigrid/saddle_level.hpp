@@ -59,6 +59,12 @@ class SaddleLevel {
   /// (N/m); empty without any.
   const Rows<float>& contact() const { return contact_; }
 
+  /// The rows with springs of contact.
+  const std::vector<std::size_t>& touching() const { return touching_; }
+
+  /// The diagonal of D (m/N) without springs of contact.
+  const Rows<float>& diagonal() const { return diagonal_; }
+
   /// 1, or 0 on constrained components and unused rows.
   const Rows<float>& free() const { return free_; }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <tuple>
 
 #include "mesh/hash.hpp"
@@ -66,6 +67,26 @@ std::string described(const LoadCurve& curve) {
   return curve.times.empty() ? "" : fmt::format("curve({}:{})", curve.times, curve.factors);
 }
 
+/// Text of words or numbers.
+template <class Value>
+std::string text_of(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return std::string(words_of(value)[static_cast<std::size_t>(value)]);
+  } else {
+    return fmt::format("{}", value);
+  }
+}
+
+/// Whether a parameter changes how accurately an answer is computed, but not the exact answer.
+template <class Force>
+constexpr bool is_numerical(std::string_view parameter) {
+  if constexpr (requires { Force::numerical; }) {
+    return std::ranges::find(Force::numerical, parameter) != Force::numerical.end();
+  } else {
+    return false;
+  }
+}
+
 /// "name(value:value)" with the parameters of a force that affect a static answer, or with those that affect
 /// only motions; then its curve, and words other than the default.
 template <class Force>
@@ -74,12 +95,12 @@ std::string described(const Force& force, bool in_motion) {
   std::string others;
   const auto add = [&]<class Value>(const Parameter<Force, Value>& parameter) {
     const Value& value = force.*(parameter.member);
-    if ((parameter.name == Force::only_in_motion) != in_motion) return;
+    if ((parameter.name == Force::only_in_motion) != in_motion || is_numerical<Force>(parameter.name)) return;
     if constexpr (std::is_same_v<Value, LoadCurve>) {
       others += described(value);
     } else if constexpr (std::is_enum_v<Value>) {
       if (value != Force{}.*(parameter.member))
-        others += fmt::format("{} {}", parameter.name, words_of(value)[static_cast<std::size_t>(value)]);
+        others += fmt::format("{} {}", parameter.name, text_of(value));
     } else {
       values.push_back(fmt::format("{}", value));
     }
@@ -148,6 +169,22 @@ std::string case_hash(const Case& description) {
   });
   if (!description.quasi_static) text += described_motion(description);
   return hash_of(text);
+}
+
+std::string numerical_settings(const Case& description) {
+  const auto& [tolerance, levels, cycles, max_steps, check_interval] = description.relaxation;
+  std::string text =
+      fmt::format("cycles {} tolerance {} levels {} at most {}", cycles, tolerance, levels, max_steps);
+  description.forces.for_each([&]<class Force>(const Force& force) {
+    const auto add = [&]<class Value>(const Parameter<Force, Value>& parameter) {
+      if constexpr (!std::is_same_v<Value, LoadCurve>) {
+        if (is_numerical<Force>(parameter.name))
+          text += fmt::format(" {} {}", parameter.name, text_of(force.*(parameter.member)));
+      }
+    };
+    std::apply([&](const auto&... parameter) { (add(parameter), ...); }, Force::parameters());
+  });
+  return text;
 }
 
 }  // namespace sandglass

@@ -134,7 +134,11 @@ struct Case : CaseSettings {
 
 /// A hash of everything that affects the answer: mesh recipe, laws, sets, imposed displacements, rotations
 /// and forces; for motions also density, damping, duration, ramp time and initial velocities. Method, other
-/// settings and texts are not hashed.
+/// settings, numerical parameters of forces and texts are not hashed.
 std::string case_hash(const Case& description);
+
+/// What affects how accurately the answer is computed, but not the exact answer: limits of the search for
+/// static equilibrium and numerical parameters of forces. "name value ..." in one line.
+std::string numerical_settings(const Case& description);
 
 }  // namespace sandglass

@@ -80,7 +80,7 @@ class Equilibrium {
   double residual() const { return mixed_.residual(); }
 
   /// See MixedBody.
-  bool at_rounding() const { return mixed_.at_rounding(stage_ != Stage::descent); }
+  bool at_rounding() { return mixed_.at_rounding(stage_ != Stage::descent); }
   bool bears_nothing() const { return mixed_.bears_nothing(); }
 
   /// The norm of the residuals of both unknowns over its initial value; 1 in the last stage, which has no

@@ -66,9 +66,6 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
                      [&](const Material& material) { return std::visit(moduli, material.law); });
 }
 
-/// The smallest share of a block of D that elimination leaves: less is rounding.
-constexpr float least_pivot = 1e-6f;
-
 /// The share of forces in the diagonal of the stiffness, N/m; empty if there is none.
 Rows<float> stiffness_of_forces(const Scene& scene, const Layout& layout) {
   Rows<float> stiffness(layout.rows());
@@ -96,9 +93,9 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       p_(model.scene().mesh.cells.size()),
       defect_(p_.size()),
       pressure_force_(free_.size()),
-      weights_(multigrid_.elements().zero()),
-      residuals_(weights_),
-      b_(weights_) {
+      weights_(multigrid_.elements()),
+      residuals_(multigrid_.elements().zero()),
+      scratch_(residuals_) {
   double amplification = 1.0;  // of the rounding of J - 1
   for (const ModelModuli& moduli : moduli_) {
     lambdas_.push_back(moduli.lambda);
@@ -210,34 +207,26 @@ auto MixedBody<Real>::multipliers(double penalty) const -> Multipliers {
 
 template <class Real>
 void MixedBody<Real>::weigh() {
-  couplings_.clear();
-  for (std::size_t row = 0; row < weights_.u.size(); ++row) {
-    const Tensor<float> D = multigrid_.elements().relaxation(row);
-    const bool touches = !contact_.empty() && contact_[row].x != Row<float>{}.x;
-    Tensor<float> root{};
-    for (int j = 0; j < 3; ++j) {
-      for (int i = j; i < 3; ++i) {
-        float left = D(i, j);
-        for (int k = 0; k < j; ++k) left -= root(i, k) * root(j, k);
-        root(i, j) = i == j              ? std::sqrt(std::max(left, least_pivot * D(i, i)))
-                     : root(j, j) > 0.0f ? left / root(j, j)
-                                         : 0.0f;
-      }
-      weights_.u[row][at(j)] = root(j, j);
-    }
-    if (touches) couplings_.push_back({row, root(1, 0), root(2, 0), root(2, 1)});
-  }
+  weights_.set_forces(multigrid_.elements());
   for_each_element([&](std::size_t e, std::size_t c) {
-    weights_.p[c] = static_cast<float>(std::sqrt(moduli_[materials_.of(e)].mu / volume(e)));
+    weights_.set_pressure(c, moduli_[materials_.of(e)].mu, volume(e));
   });
 }
 
 template <class Real>
 void MixedBody<Real>::evaluate() {
+  evaluate_forces();
+  compare();
+}
+
+/// Forces that depend on the path have taken the increment into their history: another evaluation in the same
+/// place must not take it again.
+template <class Real>
+void MixedBody<Real>::evaluate_forces() {
   body_.evaluate_forces();
+  if (elements_.needs_increment()) std::ranges::fill(body_.state().increment, Row<Real>{});
   ++evaluations_;
   residual_ = body_.residual();
-  compare();
 }
 
 template <class Real>
@@ -314,14 +303,19 @@ double MixedBody<Real>::sum_over_components(const Term& term) const {
 }
 
 template <class Real>
-bool MixedBody<Real>::at_rounding(bool in_both) const {
+bool MixedBody<Real>::at_rounding(bool in_both) {
   const double energy = sum_over_components([](double k, double u) { return k * u * u; });
   const double limit = rounding<Real> * std::sqrt(energy);
   if (in_both && norm() <= limit) return true;
-  MixedVector forces = multigrid_.elements().zero();
-  forces.u = rounded_rows<float>(body_.free_forces());
-  weigh(forces);
-  return std::sqrt(dot(forces, forces, multigrid_.elements().blocks())) <= limit;
+  const MixedBlocks& blocks = multigrid_.elements().blocks();
+  const Real* f = numbers_of(body_.free_forces());
+  float* forces = numbers_of(scratch_.u);
+  blocks.u.for_each([=](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) forces[k] = static_cast<float>(f[k]);
+  });
+  std::fill(scratch_.p.begin(), scratch_.p.end(), 0.0f);
+  weigh(scratch_);
+  return std::sqrt(dot(scratch_, scratch_, blocks)) <= limit;
 }
 
 template <class Real>
@@ -331,45 +325,12 @@ bool MixedBody<Real>::bears_nothing() const {
 }
 
 template <class Real>
-void MixedBody<Real>::weigh(MixedVector& residuals) const {
-  const MixedBlocks& blocks = multigrid_.elements().blocks();
-  for (const auto& [row, yx, zx, zy] : couplings_) {  // the diagonal follows
-    Row<float>& f = residuals.u[row];
-    const Row<float>& w = weights_.u[row];
-    if (w[0] > 0.0f) f[0] += (yx * f[1] + zx * f[2]) / w[0];
-    if (w[1] > 0.0f) f[1] += zy * f[2] / w[1];
-  }
-  const auto multiply = [](const float* w, float* r, const Blocks& numbers) {
-    numbers.for_each([=](std::size_t first, std::size_t last) {
-#pragma omp simd
-      for (std::size_t k = first; k < last; ++k) r[k] *= w[k];
-    });
-  };
-  multiply(numbers_of(weights_.u), numbers_of(residuals.u), blocks.u);
-  multiply(weights_.p.data(), residuals.p.data(), blocks.p);
-}
-
-template <class Real>
 void MixedBody<Real>::correct(const MixedVector& weighted, MixedVector& step) {
   // The range of single precision is small.
   const MixedBlocks& blocks = multigrid_.elements().blocks();
   const double size = std::sqrt(dot(weighted, weighted, blocks));
-  const auto scale = static_cast<float>(size > 0.0 ? -1.0 / size : 1.0);
-  const auto divide = [&](const float* r, const float* w, float* b, const Blocks& numbers) {
-    numbers.for_each([=](std::size_t first, std::size_t last) {
-#pragma omp simd
-      for (std::size_t k = first; k < last; ++k) b[k] = w[k] > 0.0f ? scale * r[k] / w[k] : 0.0f;
-    });
-  };
-  divide(numbers_of(weighted.u), numbers_of(weights_.u), numbers_of(b_.u), blocks.u);
-  divide(weighted.p.data(), weights_.p.data(), b_.p.data(), blocks.p);
-  for (const auto& [row, yx, zx, zy] : couplings_) {
-    Row<float>& f = b_.u[row];
-    const Row<float>& w = weights_.u[row];
-    if (w[1] > 0.0f) f[1] -= zy * f[2] / w[1];
-    if (w[0] > 0.0f) f[0] -= (yx * f[1] + zx * f[2]) / w[0];
-  }
-  multigrid_.cycle(b_, step);
+  weights_.divide(static_cast<float>(size > 0.0 ? -1.0 / size : 1.0), weighted, scratch_, blocks);
+  multigrid_.cycle(scratch_, step);
   multiply(static_cast<float>(size), step, blocks);
 }
 
@@ -437,9 +398,7 @@ void MixedBody<Real>::average_pressures(const std::vector<int>& element_of) {
 
 template <class Real>
 void MixedBody<Real>::evaluate(const Multipliers* multipliers, Rows<Real>& f) {
-  body_.evaluate_forces();
-  ++evaluations_;
-  residual_ = body_.residual();
+  evaluate_forces();
   f = body_.free_forces();
   if (multipliers == nullptr) return;
   replace_pressures(multipliers->pressures, multipliers->given_up);

@@ -5,6 +5,7 @@
 
 #include "multigrid/saddle_multigrid.hpp"
 #include "solve/body.hpp"
+#include "solve/residual_weights.hpp"
 
 namespace sandglass {
 
@@ -76,7 +77,7 @@ class MixedBody {
 
   /// Whether the remaining residuals may be rounding of the displacements and of the arithmetic: in both
   /// unknowns, or only in the displacements. See README.md, "Rounding".
-  bool at_rounding(bool in_both) const;
+  bool at_rounding(bool in_both);
 
   /// Whether reactions and loads may also be rounding at the undeformed body's stiffest node: the body bears
   /// nothing.
@@ -90,7 +91,7 @@ class MixedBody {
   void precondition(const MixedVector& r, MixedVector& z);
 
   /// Weights residuals in place.
-  void weigh(MixedVector& residuals) const;
+  void weigh(MixedVector& residuals) const { weights_.multiply(residuals, multigrid_.elements().blocks()); }
 
   /// Adds `share` times a step to both unknowns, m and Pa.
   void move(const MixedVector& step, double share);
@@ -153,6 +154,7 @@ class MixedBody {
   double volume(std::size_t element) const {
     return static_cast<double>(multigrid_.elements().tangents()[cell(element)].volume);
   }
+  void evaluate_forces();
   void update_multigrid();
   void slide();
 
@@ -175,12 +177,6 @@ class MixedBody {
     return static_cast<double>(defect_[element]) / volume(element) +
            static_cast<double>(multipliers.pressures[element]) / multipliers.given_up[materials_.of(element)];
   }
-
-  /// The rest of a row's L, where a spring of contact is oblique to the axes.
-  struct Coupling {
-    std::size_t row;
-    float yx, zx, zy;
-  };
 
   std::size_t cell(std::size_t element) const { return multigrid_.elements().cells()[element]; }
 
@@ -215,10 +211,8 @@ class MixedBody {
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
   Rows<Real> pressure_force_;
-  MixedVector weights_;  // roots of m/N and of Pa/m^3: the diagonal of L, L L^T = D
-  std::vector<Coupling> couplings_;
-  MixedVector residuals_;
-  MixedVector b_;  // scratch
+  ResidualWeights weights_;
+  MixedVector residuals_, scratch_;
   double residual_ = 0.0;
   long evaluations_ = 0;
 };

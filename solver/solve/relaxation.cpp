@@ -16,6 +16,7 @@
 #include "solve/frame.hpp"
 #include "solve/health.hpp"
 #include "solve/load_levels.hpp"
+#include "solve/stability.hpp"
 #include "solve/stagnation.hpp"
 
 namespace sandglass {
@@ -30,7 +31,7 @@ class Search {
       : model_(model),
         elements_(elements),
         settings_(model.scene().settings.relaxation),
-        most_evaluations_(without_stiffness(model) ? std::min(few_evaluations, settings_.max_steps)
+        most_evaluations_(leaves_hourglass_modes(model.choice()) ? std::min(few_evaluations, settings_.max_steps)
                                                    : settings_.max_steps),
         amplification_(largest_amplification(model.scene().materials)),
         observer_(observer),
@@ -95,11 +96,6 @@ class Search {
 
   /// The largest number of saddles that are left one after another.
   static constexpr int most_saddles = 5;
-
-  static bool without_stiffness(const Model& model) {
-    const MethodEntry& method = method_named(model.choice().method);
-    return !method.controls_hourglass || method.damps_only;
-  }
 
   /// The largest lambda / mu of the materials.
   static double largest_amplification(const Materials& materials) {
@@ -201,26 +197,11 @@ class Search {
     return healthy;
   }
 
-  /// The reason why the tangent does not decide whether an equilibrium is stable; empty if it does.
-  std::string no_potential() const {
-    if (elements_.needs_increment()) return "forces depend on the path";
-    for (const auto& force : model_.scene().forces)
-      if (!force->traits().no_potential.empty()) return std::string(force->traits().no_potential);
-    if (without_stiffness(model_)) return "hourglass modes are not resisted";
-    if (method_named(model_.choice().method).is_linear) return "";
-    // The softest motions are computed with less resistance to volume changes. Such a law does not separate
-    // it, so the result would depend on the orientation.
-    const auto& materials = model_.scene().materials.list;
-    const auto splits = [](const Material& material) { return splits_volume(material.law); };
-    return std::all_of(materials.begin(), materials.end(), splits) ? ""
-                                                                   : "a law has no separate volumetric part";
-  }
-
   /// At the full load, leaves equilibria whose tangent has a negative eigenvalue, until a minimum of the
   /// potential is found; false if the run ends.
   bool descend_from_saddles() {
     if (!load_levels_.full() || (result_.stagnated && !result_.rounded)) return true;
-    result_.why_not_decided = no_potential();
+    result_.why_not_decided = why_not_decided(model_, elements_.needs_increment());
     if (!result_.why_not_decided.empty()) return true;
     result_.stability = Stability::stable;
     if (method_named(model_.choice().method).is_linear) return true;
@@ -250,7 +231,7 @@ class Search {
   /// Whether the residual forces may be rounding, of displacements or of J - 1, and are small compared with
   /// reactions and loads, or these are rounding too. With a tolerance below that of double precision, the
   /// search continues as far as it can.
-  bool at_rounding() const {
+  bool at_rounding() {
     constexpr double most_residual = 0.01, double_precision = std::numeric_limits<double>::epsilon();
     if (settings_.tolerance < double_precision || !equilibrium_.contact_agrees()) return false;
     const double residual = equilibrium_.residual();

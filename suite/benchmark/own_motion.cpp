@@ -85,6 +85,13 @@ class StepKeeper final : public Observer {
   std::vector<double> steps_;  // s, at the checks of the run
 };
 
+/// The number of steps of a model's motion with the undeformed body's step.
+double steps_at_undeformed_step(const Model& model) {
+  const DynamicsSettings& dynamics = model.scene().settings.dynamics;
+  const NodalField undeformed(model.scene().mesh.points.size());
+  return dynamics.duration / (dynamics.step_fraction * stable_step(model, undeformed).step);
+}
+
 }  // namespace
 
 double crossing_time(const Scene& scene) {
@@ -106,7 +113,8 @@ Scene in_own_motion(const Scene& scene) {
   return moving;
 }
 
-OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proceed& proceed) {
+OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proceed& proceed,
+                            double most_element_steps) {
   const bool adapts = method_named(choice.method).adapts();
   // Steps in float cost two thirds and are as long; but the choice of levels is timed in double.
   choice.precision = adapts ? Precision::double_precision : Precision::single_precision;
@@ -115,10 +123,15 @@ OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proce
   const Scene moving = in_own_motion(scene);
   const DynamicsSettings& dynamics = moving.settings.dynamics;
   const Model model(moving, choice);
-  const double undeformed_step =
-      dynamics.step_fraction * stable_step(model, NodalField(moving.mesh.points.size())).step;
-  StepKeeper keeper(adapts, std::lround(most_steps * dynamics.duration / undeformed_step), proceed);
+  const double steps = steps_at_undeformed_step(model);
   OwnMotion found;
+  if (const std::size_t elements = moving.mesh.cells.size();
+      static_cast<double>(elements) * steps > most_element_steps) {
+    found.remark =
+        fmt::format("its motion would take {:.0f} steps of {} elements: not followed", steps, elements);
+    return found;
+  }
+  StepKeeper keeper(adapts, std::lround(most_steps * steps), proceed);
   try {
     Motion motion = integrate(model, keeper);
     if (keeper.interrupted()) throw ComputationError("interrupted; nothing was written");

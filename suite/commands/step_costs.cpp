@@ -18,6 +18,10 @@ namespace {
   throw ComputationError("verify: interrupted; nothing was written");
 }
 
+/// A longer motion, of more than about ten seconds, is not followed: its accuracy, not its steps, is of
+/// interest.
+constexpr double most_element_steps = 1e8;
+
 /// The motion that a run has already computed.
 OwnMotion motion_of(const VerifiedRun& run) {
   const auto& [seconds, steps] = *run.verdict->motion;
@@ -28,7 +32,7 @@ OwnMotion motion_of(const VerifiedRun& run) {
 OwnMotion own_motion_of(const VerifiedRun& run, const Proceed& proceed) {
   if (method_named(run.choice.method).is_condensed) return {};
   if (run.scene->settings.quasi_static || method_named(run.choice.method).adapts()) {
-    return follow_own_motion(*run.scene, run.choice, proceed);
+    return follow_own_motion(*run.scene, run.choice, proceed, most_element_steps);
   }
   return run.verdict->motion ? motion_of(run) : OwnMotion{.remark = run.verdict->status};
 }

@@ -79,6 +79,7 @@ CellFiles::CellFiles(const std::filesystem::path& folder, const Case& descriptio
                      Provenance provenance)
     : folder_(folder / description.name),
       case_hash_(case_hash(description)),
+      settings_(numerical_settings(description)),
       limit_(limit),
       provenance_(std::move(provenance)) {}
 
@@ -94,7 +95,9 @@ std::optional<Cell> CellFiles::read(const Map& map, const std::string& method, d
   if (!stream) return std::nullopt;
   try {
     const Json record = Json::parse(stream);
-    if (record.at("case_hash") != case_hash_ || record.at("limit") != limit_) return std::nullopt;
+    if (record.at("case_hash") != case_hash_ || record.at("limit") != limit_ ||
+        record.value("settings", "") != settings_)
+      return std::nullopt;
     return to_cell(record);
   } catch (const std::exception& error) {
     throw InputError(fmt::format("{}: not a cell of a map ({}); remove it to compute it again", file.string(),
@@ -107,6 +110,7 @@ void CellFiles::write(const Map& map, const Cell& cell) const {
   make_folder(file.parent_path());
   Json record = to_record(cell);
   record["case_hash"] = case_hash_;
+  record["settings"] = settings_;
   record["limit"] = limit_;
   for (const auto& [name, value] : provenance_) record[name] = value;
   write_text_file(file, record.dump(1) + "\n");

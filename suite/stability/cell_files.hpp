@@ -24,7 +24,7 @@ class CellFiles {
   std::filesystem::path path(const Map& map, const std::string& method, double x, double y) const;
 
   std::filesystem::path folder_;
-  std::string case_hash_;
+  std::string case_hash_, settings_;
   double limit_;
   Provenance provenance_;
 };

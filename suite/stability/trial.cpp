@@ -87,11 +87,9 @@ std::string key_of(const Trial& trial) {
     return value ? fmt::to_string(*value) : std::string("none");
   };
   const auto& [description, choice, load, aspect, skew, step, noise] = trial;
-  return fmt::format(
-      "{} {} kappa {} {} load {} aspect {} skew {} step {} noise {} cycles {} tolerance {} at most {}",
-      case_hash(description), choice.method, or_none(choice.kappa), name_of(choice.precision), load, aspect,
-      skew, or_none(step), or_none(noise), description.relaxation.cycles, description.relaxation.tolerance,
-      description.relaxation.max_steps);
+  return fmt::format("{} {} kappa {} {} load {} aspect {} skew {} step {} noise {} {}",
+                     case_hash(description), choice.method, or_none(choice.kappa), name_of(choice.precision),
+                     load, aspect, skew, or_none(step), or_none(noise), numerical_settings(description));
 }
 
 }  // namespace sandglass
