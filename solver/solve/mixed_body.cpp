@@ -6,9 +6,9 @@
 
 #include "assembly/method_entry.hpp"
 #include "element/one_point.hpp"
-#include "element/perturbation_stiffness.hpp"
 #include "material/stiffening.hpp"
 #include "math/row_loops.hpp"
+#include "solve/model_moduli.hpp"
 
 namespace sandglass {
 
@@ -17,17 +17,8 @@ namespace {
 /// Smaller changes of displacement gradients do not impair the multigrid method.
 constexpr double hardly_changed = 0.1;
 
-/// The grids do not see the stiffness of hourglass modes: a model with the full stiffness of a strong control
-/// converges more slowly than one with E/9, with which cubes bend correctly. If volume changes are resisted
-/// at several points of an element, somewhat more helps, in shares of E/9.
-constexpr double strongest_resistance = 16.0;
-
 /// The share of the smoother's diagonal that is added to the cycle, which pressures could make indefinite.
 constexpr float added_diagonal = 0.5f;
-
-/// The pressures carry lambda (J - 1), with lambda at least this share of mu: if Poisson's ratio is zero or
-/// less, they would carry nothing, and 1 / lambda has no value. Any share is admissible.
-constexpr double least_lambda_over_mu = 0.1;
 
 /// A displacement is rounded by half an epsilon. The stiffness of all elements at a node, at most three times
 /// the diagonal, turns this into forces; the arithmetic of an element rounds a few times as much.
@@ -47,25 +38,6 @@ constexpr double most_lambda_over_mu = 1e4;
 /// beyond those of the elements.
 constexpr double most_lambda_over_mu_in_contact = 50.0;
 
-/// Of the undeformed laws and of the method's control.
-std::vector<ModelModuli> moduli_of(const Model& model) {
-  const MethodChoice& choice = model.choice();
-  const MethodEntry& method = method_named(choice.method);
-  HourglassSettings settings;
-  if (method.kappa_affects_equilibrium)
-    settings = {.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
-  const auto moduli = [&](const auto& law) {
-    const double lambda = std::max(lame_lambda(law), least_lambda_over_mu * law.shear_modulus());
-    const double unit = young_modulus(law) / 9.0;
-    const double control = std::min(PerturbationStiffness::modulus(law, settings), unit);
-    const double resistance = std::min(unit + lambda / 9.0, strongest_resistance * unit);
-    return ModelModuli{lambda, law.shear_modulus(), method.pressure_varies ? resistance : control,
-                       method.integration_points > 1};
-  };
-  return by_material(model.scene().materials,
-                     [&](const Material& material) { return std::visit(moduli, material.law); });
-}
-
 /// The share of forces in the diagonal of the stiffness, N/m; empty if there is none.
 Rows<float> stiffness_of_forces(const Scene& scene, const Layout& layout) {
   Rows<float> stiffness(layout.rows());
@@ -82,7 +54,7 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       body_(model, elements),
       mesh_(model.scene().mesh),
       materials_(model.scene().materials),
-      moduli_(moduli_of(model)),
+      moduli_(model_moduli(model)),
       linear_(method_named(model.choice().method).is_linear),
       pressure_varies_(method_named(model.choice().method).pressure_varies),
       free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),

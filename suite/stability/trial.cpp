@@ -79,6 +79,7 @@ Trial careful(Trial trial) {
 Trial golden_of(Trial trial) {
   trial.choice = {std::string(golden_method)};
   trial.description.relaxation.cycles = 0;
+  for (Obstacle& obstacle : trial.description.forces.of<Obstacle>()) obstacle.penalty = Obstacle{}.penalty;
   return careful(std::move(trial));
 }
 
