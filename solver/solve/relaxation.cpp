@@ -38,6 +38,7 @@ class Search {
         equilibrium_(model, elements),
         adaption_(model, equilibrium_.body()),
         load_levels_(model, equilibrium_.body(), elements.needs_increment()),
+        touches_(equilibrium_.may_touch()),
         no_velocity_(model.masses().size()),
         reactions_(model.scene().constraints.size(), 0.0),
         next_check_(settings_.check_interval) {}
@@ -83,9 +84,9 @@ class Search {
   }
 
  private:
-  /// The residual at which elements first choose their levels at the full load; levels that would still
-  /// change at smaller residuals are corrected at the end.
-  static constexpr double tolerance_for_adaption = 1e-3;
+  /// The residual at which elements first choose their levels at the full load, and obstacles are augmented;
+  /// levels that would still change at smaller residuals are corrected at the end.
+  static constexpr double moderate_tolerance = 1e-3;
 
   /// The largest error over its estimate, which is slightly low in slender bodies.
   static constexpr double largest_over_estimate = 1.1;
@@ -132,8 +133,8 @@ class Search {
 
   /// At the full load.
   double tolerance() const {
-    if (adaption_.active() && !settled_) return std::max(settings_.tolerance, tolerance_for_adaption);
-    return settings_.tolerance;
+    const bool moderate = (adaption_.active() && !settled_) || (touches_ && !augmented_);
+    return moderate ? std::max(settings_.tolerance, moderate_tolerance) : settings_.tolerance;
   }
 
   /// Relative time: the length of the load path, plus, at the full load, further evaluations over the earlier
@@ -251,8 +252,9 @@ class Search {
   /// full load with the nodes that touch obstacles there, after one augmented step.
   bool arrived() {
     if (load_levels_.full() && equilibrium_.residual() < tolerance()) equilibrium_.update_contact();
-    if (!(near() || (at_rounding() && equilibrium_.bears_nothing())) || !is_healthy(body())) return false;
-    return !augment();
+    const auto found = [this] { return near() || (at_rounding() && equilibrium_.bears_nothing()); };
+    if (!found() || !is_healthy(body())) return false;
+    return augmented_ || (!augment() && found());
   }
 
   bool near() const {
@@ -388,6 +390,7 @@ class Search {
   Equilibrium<Real> equilibrium_;
   Adaption<Real> adaption_;
   LoadLevels<Real> load_levels_;
+  bool touches_;  // whether it may touch obstacles
   NodalField no_velocity_;
   Relaxation result_;
   std::vector<double> reactions_;
