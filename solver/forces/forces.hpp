@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "base/type_list.hpp"
+#include "forces/contact.hpp"
 #include "forces/dead_force.hpp"
 #include "forces/gravity.hpp"
 #include "forces/obstacle.hpp"
@@ -19,7 +20,7 @@ namespace sandglass {
 /// only_in_motion, the parameter that has no effect in static cases, if any; by_mass, whether it depends on
 /// the density; and resolve(resolver), which adds its BodyForce on a mesh. The optional `one_of` names
 /// parameters of which at least one must be given. All loads are proportional to the factor of their curve.
-using Forces = TypeList<PointMass, DeadForce, Pressure, Gravity, Support, Obstacle>;
+using Forces = TypeList<PointMass, DeadForce, Pressure, Gravity, Support, Obstacle, Contact>;
 
 /// The forces of a case: its tables of each kind, in their order.
 template <class List>

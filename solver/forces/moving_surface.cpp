@@ -1,0 +1,178 @@
+#include "forces/moving_surface.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "forces/triangle_foot.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::vector<int> sorted_nodes_of(const std::vector<Quadrilateral>& faces) {
+  std::vector<int> nodes = nodes_of(faces);
+  std::ranges::sort(nodes);
+  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  return nodes;
+}
+
+/// The faces by places in `nodes`.
+std::vector<Quadrilateral> renumbered(std::vector<Quadrilateral> faces, const std::vector<int>& nodes) {
+  for (Quadrilateral& face : faces) {
+    for (int& node : face) node = static_cast<int>(std::ranges::lower_bound(nodes, node) - nodes.begin());
+  }
+  return faces;
+}
+
+NodalField centres_of(const std::vector<Quadrilateral>& faces, const NodalField& points) {
+  NodalField centres;
+  for (const Quadrilateral& face : faces) centres.push_back(mean_at(face, points));
+  return centres;
+}
+
+/// Twice the area of a face times its normal, m^2.
+Vector normal_of(const std::array<Vector, 4>& x) {
+  return cross(difference(x[2], x[0]), difference(x[3], x[1]));
+}
+
+/// The k-th of the four triangles of a face.
+std::array<Vector, 3> triangle_of(const std::array<Vector, 4>& x, std::size_t k) {
+  const Vector centre = sum(sum(sum(sum({}, 0.25, x[0]), 0.25, x[1]), 0.25, x[2]), 0.25, x[3]);
+  return {x[k], x[(k + 1) % 4], centre};
+}
+
+/// The weights of the corners of a face, from those of its k-th triangle.
+Row<double> of_corners(const Vector& weights, std::size_t k) {
+  const double quarter = 0.25 * weights[2];
+  Row<double> all{{quarter, quarter, quarter, quarter}};
+  all[k] += weights[0];
+  all[(k + 1) % 4] += weights[1];
+  return all;
+}
+
+}  // namespace
+
+MovingSurface::MovingSurface(const NodalField& points, const std::vector<Quadrilateral>& faces)
+    : nodes_(sorted_nodes_of(faces)),
+      X_(values_at(nodes_, points)),
+      faces_(renumbered(faces, nodes_)),
+      tree_(centres_of(faces_, X_), 2) {
+  std::map<std::vector<int>, std::size_t> known;  // points by their nodes
+  constexpr std::array<std::array<double, 2>, 4> corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  for (const Quadrilateral& face : faces_) {
+    const auto X = corners_of(X_, face);
+    for (int place = 0; place < 9; ++place) {
+      const double xi = place % 3 - 1, eta = place / 3 - 1;
+      Row<double> weights;
+      Vector along_xi{}, along_eta{};
+      std::vector<int> nodes;
+      for (std::size_t I = 0; I < 4; ++I) {
+        const double a = 1.0 + xi * corners[I][0], b = 1.0 + eta * corners[I][1];
+        weights[I] = 0.25 * a * b;
+        along_xi = sum(along_xi, 0.25 * corners[I][0] * b, X[I]);
+        along_eta = sum(along_eta, 0.25 * corners[I][1] * a, X[I]);
+        if (weights[I] > 0.0) nodes.push_back(face[I]);
+      }
+      std::ranges::sort(nodes);
+      const double simpson = (xi == 0.0 ? 4.0 : 1.0) * (eta == 0.0 ? 4.0 : 1.0) / 9.0;
+      const auto [one, is_new] = known.try_emplace(nodes, points_.size());
+      if (is_new) points_.push_back({face, weights, 0.0});
+      points_[one->second].area += simpson * length(cross(along_xi, along_eta));
+    }
+  }
+}
+
+double MovingSurface::move(NodalRows u, Row<double>* rows) const {
+  double most = 0.0;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const Row<double>& of_node = u[nodes_[n]];
+    double square = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double x = X_[n][i] + of_node[i], way = x - rows[n][i];
+      rows[n][i] = x;
+      square += way * way;
+    }
+    most = std::max(most, square);
+  }
+  return std::sqrt(most);
+}
+
+void MovingSurface::fit(Row<double>* rows) const {
+  Row<double>* normals = rows + nodes_.size();
+  std::fill(normals, normals + nodes_.size(), Row<double>{});
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const Vector normal = normal_of(corners_now(static_cast<int>(f), rows));
+    for (const int node : faces_[f]) {
+      for (std::size_t i = 0; i < 3; ++i) normals[node][i] += normal[i];
+    }
+  }
+  tree_.fit(rows + 2 * nodes_.size(), [&](int face, const auto& grow) {
+    for (const int node : corners(face)) grow(rows[node]);
+  });
+}
+
+std::array<Vector, 4> MovingSurface::corners_now(int face, const Row<double>* rows) const {
+  std::array<Vector, 4> x;
+  for (std::size_t I = 0; I < 4; ++I) {
+    const Row<double>& row = rows[corners(face)[I]];
+    x[I] = {row[0], row[1], row[2]};
+  }
+  return x;
+}
+
+SurfaceFoot MovingSurface::closest(const Vector& x, const Vector& normal, double reach,
+                                   const std::vector<int>& except, const Row<double>* rows) const {
+  SurfaceFoot closest{.square = reach * reach};
+  tree_.search(x, rows + 2 * nodes_.size(), closest.square, [&](int face) {
+    const auto corners = corners_now(face, rows);
+    if (dot(normal_of(corners), normal) >= 0.0 || std::ranges::binary_search(except, face)) return;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto triangle = triangle_of(corners, k);
+      const TriangleFoot foot = TriangleFoot::of(triangle, x);
+      const Vector there = foot.point(triangle), from = difference(x, there);
+      const double square = dot(from, from);
+      if (square < closest.square) closest = {square, face, k, of_corners(foot.weights, k), there};
+    }
+  });
+  return closest;
+}
+
+Row<double> MovingSurface::weights_at(const SurfaceFoot& foot, const Vector& x,
+                                      const Row<double>* rows) const {
+  const auto triangle = triangle_of(corners_now(foot.face, rows), foot.triangle);
+  return of_corners(plane_weights(triangle, x), foot.triangle);
+}
+
+std::vector<std::vector<int>> faces_around(const MovingSurface& surface,
+                                           const std::vector<Quadrilateral>& faces,
+                                           std::span<const Hexahedron> cells) {
+  std::map<int, std::vector<int>> faces_at, cells_at;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (const int node : faces[f]) faces_at[node].push_back(static_cast<int>(f));
+  }
+  for (const int node : surface.nodes()) cells_at[node] = {};
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    for (const int node : cells[e]) {
+      if (const auto known = cells_at.find(node); known != cells_at.end())
+        known->second.push_back(static_cast<int>(e));
+    }
+  }
+  std::vector<std::vector<int>> around;
+  for (const SurfacePoint& point : surface.points()) {
+    std::vector<int>& found = around.emplace_back();
+    for (std::size_t I = 0; I < 4; ++I) {
+      if (point.weights[I] == 0.0) continue;
+      for (const int cell : cells_at[surface.nodes()[at(point.nodes[I])]]) {
+        for (const int node : cells[at(cell)]) {
+          if (const auto known = faces_at.find(node); known != faces_at.end())
+            found.insert(found.end(), known->second.begin(), known->second.end());
+        }
+      }
+    }
+    std::ranges::sort(found);
+    found.erase(std::ranges::unique(found).begin(), found.end());
+  }
+  return around;
+}
+
+}  // namespace sandglass
