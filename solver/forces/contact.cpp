@@ -35,8 +35,8 @@ void Contact::resolve(ForceResolver& resolver) const {
     }
   }
   const ContactScale scale(resolver, all);
-  auto pair = std::make_shared<SurfacePair>(*this, scale.stiffness(penalty), 0.5 * scale.edge,
-                                            resolver.points, resolver.cells, std::move(surfaces));
+  auto pair = std::make_shared<SurfacePair>(*this, scale.stiffness(penalty), scale.edge, resolver.points,
+                                            resolver.cells, std::move(surfaces));
   if (const auto deepest = pair->deepest_at_start(); deepest && deepest->depth > scale.rounding()) {
     refuse_at(deepest->node,
               fmt::format("is {:.3g} m inside of what it may touch at the start", deepest->depth),

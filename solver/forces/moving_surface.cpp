@@ -30,6 +30,22 @@ NodalField centres_of(const std::vector<Quadrilateral>& faces, const NodalField&
   return centres;
 }
 
+/// Whether no other face has an edge, from each corner to the next.
+std::vector<std::array<bool, 4>> rim_of(const std::vector<Quadrilateral>& faces) {
+  std::map<std::pair<int, int>, int> count;
+  const auto edge = [](const Quadrilateral& face, std::size_t k) {
+    return std::minmax(face[k], face[(k + 1) % 4]);
+  };
+  for (const Quadrilateral& face : faces) {
+    for (std::size_t k = 0; k < 4; ++k) ++count[edge(face, k)];
+  }
+  std::vector<std::array<bool, 4>> on_rim(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (std::size_t k = 0; k < 4; ++k) on_rim[f][k] = count[edge(faces[f], k)] == 1;
+  }
+  return on_rim;
+}
+
 /// Twice the area of a face times its normal, m^2.
 Vector normal_of(const std::array<Vector, 4>& x) {
   return cross(difference(x[2], x[0]), difference(x[3], x[1]));
@@ -56,6 +72,7 @@ MovingSurface::MovingSurface(const NodalField& points, const std::vector<Quadril
     : nodes_(sorted_nodes_of(faces)),
       X_(values_at(nodes_, points)),
       faces_(renumbered(faces, nodes_)),
+      on_rim_(rim_of(faces_)),
       tree_(centres_of(faces_, X_), 2) {
   std::map<std::vector<int>, std::size_t> known;  // points by their nodes
   constexpr std::array<std::array<double, 2>, 4> corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
@@ -129,12 +146,31 @@ SurfaceFoot MovingSurface::closest(const Vector& x, const Vector& normal, double
     for (std::size_t k = 0; k < 4; ++k) {
       const auto triangle = triangle_of(corners, k);
       const TriangleFoot foot = TriangleFoot::of(triangle, x);
-      const Vector there = foot.point(triangle), from = difference(x, there);
+      const Vector there = point_of(triangle, foot.weights), from = difference(x, there);
       const double square = dot(from, from);
       if (square < closest.square) closest = {square, face, k, of_corners(foot.weights, k), there};
     }
   });
+  if (closest.face >= 0) set_behind(x, closest, rows);
   return closest;
+}
+
+void MovingSurface::set_behind(const Vector& x, SurfaceFoot& foot, const Row<double>* rows) const {
+  const auto x_of_face = corners_now(foot.face, rows);
+  const auto triangle = triangle_of(x_of_face, foot.triangle);
+  const bool at_edge = foot.weights[(foot.triangle + 2) % 4] == 0.0;
+  if (at_edge && on_rim_[at(foot.face)][foot.triangle]) {
+    const Vector weights = plane_weights(triangle, x);
+    foot.weights = of_corners(weights, foot.triangle);
+    foot.x = point_of(triangle, weights);
+    const Vector from = difference(x, foot.x);
+    foot.square = dot(from, from);
+    foot.behind = dot(from, normal_of(x_of_face)) < 0.0;
+    return;
+  }
+  constexpr double least_cosine = 0.5;
+  const Vector n = normal(corners(foot.face), foot.weights, rows);
+  foot.behind = dot(difference(x, foot.x), n) < -least_cosine * foot.distance() * length(n);
 }
 
 Row<double> MovingSurface::weights_at(const SurfaceFoot& foot, const Vector& x,

@@ -20,6 +20,9 @@ struct SurfaceFoot {
   std::size_t triangle = 0;
   Row<double> weights = {};  ///< of the corners of the face
   Vector x = {};             ///< m
+  bool behind = false;       ///< whether the other point is behind it
+
+  double distance() const { return std::sqrt(square); }
 };
 
 /// Boundary faces of a deformable body where it is now. Faces are four triangles about their middles. What
@@ -58,7 +61,7 @@ class MovingSurface {
   const Quadrilateral& corners(int face) const { return faces_[at(face)]; }
 
   /// The closest point to x (m) within `reach` (m) on faces that oppose a normal, except those of a sorted
-  /// list. Allocates nothing.
+  /// list. Beyond the rim of an open surface, its faces go on in their planes. Allocates nothing.
   SurfaceFoot closest(const Vector& x, const Vector& normal, double reach, const std::vector<int>& except,
                       const Row<double>* rows) const;
 
@@ -76,10 +79,12 @@ class MovingSurface {
   }
 
   std::array<Vector, 4> corners_now(int face, const Row<double>* rows) const;
+  void set_behind(const Vector& x, SurfaceFoot& foot, const Row<double>* rows) const;
 
   std::vector<int> nodes_;
-  NodalField X_;                      // m
-  std::vector<Quadrilateral> faces_;  // by places in nodes_
+  NodalField X_;                             // m
+  std::vector<Quadrilateral> faces_;         // by places in nodes_
+  std::vector<std::array<bool, 4>> on_rim_;  // whether no other face has this edge of a face
   std::vector<SurfacePoint> points_;
   BoxTree tree_;
 };

@@ -71,16 +71,9 @@ void SurfacePair::for_each_touch(NodalRows u, Row<double>* rows, const Use& use)
       const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
       const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), reach_,
                                             side.neighbours[k], of_onto);
-      const double distance = std::sqrt(foot.square);
-      bool behind = false;
-      if (foot.face >= 0) {
-        constexpr double least_cosine = 0.5;  // beyond the rim of a surface nothing is behind it
-        const Vector normal = onto.normal(onto.corners(foot.face), foot.weights, of_onto);
-        behind = dot(difference(x, foot.x), normal) < -least_cosine * distance * length(normal);
-      }
       // Both surfaces may move by half the distance before they touch.
-      of_point[0][clear_until] = behind ? way : way + 0.5 * distance;
-      if (behind) {
+      of_point[0][clear_until] = foot.behind ? way : way + 0.5 * foot.distance();
+      if (foot.behind) {
         use(side, k, x, foot, of_point);
       } else if (of_point[0][touches] != 0.0) {
         let_go(0.5 * stiffness_ * point.area, of_point, memory);
@@ -100,7 +93,7 @@ void SurfacePair::add_contact(Factors /*factors*/, NodalRows u, Row<double>* row
         const SurfacePoint& point = from.points()[k];
         const Row<double>* of_onto = memory.others + rows_of_[side.onto];
         const double stiffness = 0.5 * stiffness_ * point.area;
-        memory.moves[3] = std::max(memory.moves[3], std::sqrt(foot.square));
+        memory.moves[3] = std::max(memory.moves[3], foot.distance());
         const Row<double> anchor = contact_.friction > 0.0
                                        ? hold(x, foot, stiffness, of_point, of_onto, memory, onto)
                                        : foot.weights;
@@ -134,7 +127,7 @@ Row<double> SurfacePair::hold(const Vector& x, const SurfaceFoot& foot, double s
   } else {
     stretch = {};
   }
-  memory.sums[0] += stiffness * slip(along, contact_.friction * std::sqrt(foot.square), stretch);
+  memory.sums[0] += stiffness * slip(along, contact_.friction * foot.distance(), stretch);
   stretch = {{along[0], along[1], along[2]}};
   of_point[0][face_of_anchor] = foot.face;
   anchor = surface.weights_at(foot, difference(foot.x, along), onto);
@@ -184,7 +177,7 @@ std::optional<SurfacePair::Deepest> SurfacePair::deepest_at_start() const {
   std::optional<Deepest> deepest;
   for_each_touch(NodalRows(undeformed.data(), std::vector<int>(at(most) + 1, 0)), rows.data(),
                  [&](const Side& side, std::size_t k, const Vector&, const SurfaceFoot& foot, Row<double>*) {
-                   const double depth = std::sqrt(foot.square);
+                   const double depth = foot.distance();
                    if (deepest && depth <= deepest->depth) return;
                    const MovingSurface& from = surfaces_[side.from];
                    const SurfacePoint& point = from.points()[k];

@@ -21,6 +21,11 @@ inline Vector plane_weights(const std::array<Vector, 3>& X, const Vector& x) {
   return weights;
 }
 
+/// The mean (m) of the corners of a triangle with these weights.
+inline Vector point_of(const std::array<Vector, 3>& X, const Vector& weights) {
+  return sum(sum(sum({}, weights[0], X[0]), weights[1], X[1]), weights[2], X[2]);
+}
+
 /// The weights of the corners at the point of a triangle that is closest to x, and the feature on which it
 /// is: 0 the face, 1 to 3 the edges that start at corners 0 to 2, 4 to 6 the corners.
 struct TriangleFoot {
@@ -45,11 +50,6 @@ struct TriangleFoot {
       nearest.weights[j] = t;
     }
     return nearest;
-  }
-
-  /// The point, m.
-  Vector point(const std::array<Vector, 3>& X) const {
-    return sum(sum(sum({}, weights[0], X[0]), weights[1], X[1]), weights[2], X[2]);
   }
 };
 

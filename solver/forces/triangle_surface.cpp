@@ -183,7 +183,7 @@ void TriangleSurface::compare(const Vector& x, std::size_t triangle, Closest& cl
   std::array<Vector, 3> X;
   for (std::size_t I = 0; I < 3; ++I) X[I] = point(triangles_[triangle][I]);
   const TriangleFoot foot = TriangleFoot::of(X, x);
-  const Vector point = foot.point(X), from = difference(x, point);
+  const Vector point = point_of(X, foot.weights), from = difference(x, point);
   const double square = dot(from, from);
   if (square < closest.square) closest = {square, point, normals_[triangle][foot.feature]};
 }
