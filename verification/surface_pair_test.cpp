@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+#include <numeric>
+
+#include "mesh/edges.hpp"
 #include "solve/central_difference.hpp"
 #include "support/two_bodies.hpp"
 
@@ -20,6 +24,87 @@ struct Momentum {
     }
   }
 };
+
+TEST(SurfacePair, explore_patch) {
+  for (const auto& [below, above] : {std::pair{4, 3}, {3, 4}, {4, 4}, {5, 3}, {8, 6}, {6, 2}, {16, 12}}) {
+    const double E = 2e6, p = 1e5;
+    const NeoHookean law{.young_modulus = E, .poisson_ratio = 0.0};
+    TwoBodies plates(box({2.0, 1.0 , 1.0}, {below, 1, 4}),
+                     moved(box({2.0, 1.0, 1.0}, {above, 2, 4}), {0.0, 0.0, 1.0}), law);
+    Case& d = plates.description;
+    plates.sets["all"].resize(plates.mesh.points.size());
+    std::iota(plates.sets["all"].begin(), plates.sets["all"].end(), 0);
+    d.forces.of<Contact>() = {{.label = "pair", .set = "under", .other = "over"}};
+    d.forces.of<Pressure>() = {{.set = "top", .value = p}};
+    d.forces.of<Pressure>().front().curve = {{0.0, 0.05}, {0.0, 1.0}};
+    d.displacements = {{"foot", {}}, {"top", {}, {true, true, false}}};
+    d.dynamics.duration = 1.0;
+    d.dynamics.damping = 60.0;
+    const Scene scene = plates.scene();
+    Recorder recorder;
+    const Motion motion = integrate(Model(scene, {"linear"}), recorder);
+    double off = 0.0, stress = 0.0, mean_off=0;
+    for (const int n : plates.sets["under"]) off = std::max(off, std::abs(motion.u[at(n)][2] + 0.05)), mean_off += motion.u[at(n)][2] / static_cast<double>(plates.sets["under"].size());
+    for (const Hexahedron& cell : plates.mesh.cells) {
+      double low = 0.0, high = 0.0, z = 0.0;
+      for (int I = 0; I < 8; ++I) {
+        (I < 4 ? low : high) += 0.25 * motion.u[at(cell[at(I)])][2];
+        z += 0.125 * plates.mesh.points[at(cell[at(I)])][2];
+      }
+      stress = std::max(stress, std::abs(E * (high - low) / 0.25 / p + 1.0));
+    }
+    fmt::print("{} {}: stress off by {}, interface by {} mean {}, depth {} force {} steps {}\n", below, above, stress, off / 0.05, mean_off,
+               recorder.rows.back().depth, recorder.rows.back().reactions.at("pair")[2], motion.steps);
+  }
+}
+
+TEST(SurfacePair, explore_fold) {
+  const double L = 1.0, t = 0.2, gap = 0.1, R = 0.5 * (t + gap), bend = std::numbers::pi * R, way = 2.0 * L + bend;
+  for (const double penalty : {0.0, 1.0}) for (const double friction : {0.0, 0.3}) {
+    Column strip({1.0, 1.0, 1.0}, {1, 1, 1}, NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.45});
+    strip.mesh = lattice({25, 2, 3}, [&](const Vector& s) {
+      const double along = way * s[0], out = t * (s[1] - 0.5), y = 0.3 * s[2];
+      if (along < L) return Vector{along, y, -R - out};
+      if (along > L + bend) return Vector{way - along, y, R + out};
+      const double angle = (along - L) / R;
+      return Vector{L + (R + out) * std::sin(angle), y, -(R + out) * std::cos(angle)};
+    });
+    const auto on_boundary = boundary_nodes(strip.mesh);
+    std::vector<int> skin;
+    for (std::size_t n = 0; n < on_boundary.size(); ++n) if (on_boundary[n]) skin.push_back(static_cast<int>(n));
+    const double high = R + 0.5 * t;
+    strip.sets = {{"skin", skin}, {"foot", plane(strip.mesh.points, 2, -high)}, {"top", plane(strip.mesh.points, 2, high)}};
+    Case& d = strip.description;
+    d.quasi_static = false;
+    d.displacements = {{"foot", {}}, {"top", {0.05, 0.02, -0.16}}};
+    if (penalty > 0.0) d.forces.of<Contact>() = {{.label = "self", .set = "skin", .friction = friction, .penalty = penalty}};
+    d.dynamics.duration = 1.0;
+    d.dynamics.check_interval = 5;
+    const Scene scene = strip.scene();
+    Recorder recorder;
+    try {
+    const Motion motion = integrate(Model(scene, {"tl-perturbation"}), recorder);
+    double depth = 0.0, cross = 1.0;
+    for (const HistoryRow& row : recorder.rows) depth = std::max(depth, row.depth);
+    for (std::size_t n = 0; n < motion.u.size(); ++n) {
+      const Vector& X = strip.mesh.points[n];
+      if (std::abs(X[2] - 0.05) > 1e-9 || X[0] > L) continue;
+      const Vector up = sum(X, 1.0, motion.u[n]);
+      double nearest = 1e9, z = 0;
+      for (std::size_t m = 0; m < motion.u.size(); ++m) {
+        if (std::abs(strip.mesh.points[m][2] + 0.05) > 1e-9) continue;
+        const Vector lo = sum(strip.mesh.points[m], 1.0, motion.u[m]);
+        const double r = std::hypot(up[0] - lo[0], up[1] - lo[1]);
+        if (r < nearest) nearest = r, z = lo[2];
+      }
+      cross = std::min(cross, up[2] - z);
+    }
+    const HistoryRow& last = recorder.rows.back();
+    fmt::print("penalty {} friction {}: steps {} seconds {} depth {} gap at end {} energy {} work {} contact {} friction {} repeated {} edge {}\n", penalty, friction, motion.steps, motion.seconds, depth, cross,
+      total_energy(last), last.external_work, last.contact, last.friction, motion.repeated, shortest_edge(scene.mesh));
+    } catch (const std::exception& error) { fmt::print("{}\n", error.what()); }
+  }
+}
 
 TEST(SurfacePair, explore_bars) {
   for (const double penalty : {0.1, 1.0, 10.0}) {

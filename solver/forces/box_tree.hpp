@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "math/rows.hpp"
 #include "mesh/vectors.hpp"
@@ -45,18 +46,20 @@ class BoxTree {
   template <class Compare>
   void search(const Vector& x, const Row<double>* boxes, const double& square, const Compare& compare) const {
     constexpr std::size_t deepest = 64;  // nodes halve the items
-    std::array<std::size_t, deepest> waiting{};
+    std::array<std::pair<std::size_t, double>, deepest> waiting;
+    waiting[0] = {0, square_from(x, boxes, 0)};
     std::size_t count = 1;
     while (count > 0) {
-      const std::size_t n = waiting[--count];
-      if (!(square_from(x, boxes, n) < square)) continue;
+      const auto [n, from] = waiting[--count];
+      if (!(from < square)) continue;
       const Node& node = nodes_[n];
       for (int k = node.first; k < node.first + node.count; ++k) compare(items_[at(k)]);
       if (node.count > 0) continue;
-      const std::size_t near = n + 1, far = at(node.first);
-      const bool swaps = square_from(x, boxes, far) < square_from(x, boxes, near);
-      waiting[count++] = swaps ? near : far;
-      waiting[count++] = swaps ? far : near;
+      std::pair near{n + 1, square_from(x, boxes, n + 1)},
+          far{at(node.first), square_from(x, boxes, at(node.first))};
+      if (far.second < near.second) std::swap(near, far);
+      waiting[count++] = far;
+      waiting[count++] = near;
     }
   }
 

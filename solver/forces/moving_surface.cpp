@@ -73,7 +73,7 @@ MovingSurface::MovingSurface(const NodalField& points, const std::vector<Quadril
       X_(values_at(nodes_, points)),
       faces_(renumbered(faces, nodes_)),
       on_rim_(rim_of(faces_)),
-      tree_(centres_of(faces_, X_), 2) {
+      tree_(centres_of(faces_, X_), 1) {
   std::map<std::vector<int>, std::size_t> known;  // points by their nodes
   constexpr std::array<std::array<double, 2>, 4> corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (const Quadrilateral& face : faces_) {
@@ -143,12 +143,25 @@ SurfaceFoot MovingSurface::closest(const Vector& x, const Vector& normal, double
   tree_.search(x, rows + 2 * nodes_.size(), closest.square, [&](int face) {
     const auto corners = corners_now(face, rows);
     if (dot(normal_of(corners), normal) >= 0.0 || std::ranges::binary_search(except, face)) return;
+    const auto compare = [&](const std::array<Vector, 3>& triangle, const Vector& weights, std::size_t k) {
+      const Vector there = point_of(triangle, weights), from = difference(x, there);
+      const double square = dot(from, from);
+      if (square < closest.square) closest = {square, face, k, of_corners(weights, k), there};
+    };
+    bool within = false;
     for (std::size_t k = 0; k < 4; ++k) {
       const auto triangle = triangle_of(corners, k);
-      const TriangleFoot foot = TriangleFoot::of(triangle, x);
-      const Vector there = point_of(triangle, foot.weights), from = difference(x, there);
-      const double square = dot(from, from);
-      if (square < closest.square) closest = {square, face, k, of_corners(foot.weights, k), there};
+      const Vector weights = plane_weights(triangle, x);
+      if (!is_within(weights)) continue;
+      compare(triangle, weights, k);
+      within = true;
+    }
+    for (std::size_t k = 0; k < 4 && !within; ++k) {  // each edge of the face, and from it to the middle
+      const auto triangle = triangle_of(corners, k);
+      const double along = share_of_edge(triangle[0], triangle[1], x),
+                   inwards = share_of_edge(triangle[0], triangle[2], x);
+      compare(triangle, {1.0 - along, along, 0.0}, k);
+      compare(triangle, {1.0 - inwards, 0.0, inwards}, k);
     }
   });
   if (closest.face >= 0) set_behind(x, closest, rows);
@@ -158,10 +171,12 @@ SurfaceFoot MovingSurface::closest(const Vector& x, const Vector& normal, double
 void MovingSurface::set_behind(const Vector& x, SurfaceFoot& foot, const Row<double>* rows) const {
   const auto x_of_face = corners_now(foot.face, rows);
   const auto triangle = triangle_of(x_of_face, foot.triangle);
-  const bool at_edge = foot.weights[(foot.triangle + 2) % 4] == 0.0;
-  if (at_edge && on_rim_[at(foot.face)][foot.triangle]) {
+  const std::size_t k = foot.triangle, next = (k + 1) % 4;
+  const auto& rim = on_rim_[at(foot.face)];
+  if ((foot.weights[k] + foot.weights[next] == 1.0 && rim[k]) ||
+      (foot.weights[k] == 1.0 && rim[(k + 3) % 4]) || (foot.weights[next] == 1.0 && rim[next])) {
     const Vector weights = plane_weights(triangle, x);
-    foot.weights = of_corners(weights, foot.triangle);
+    foot.weights = of_corners(weights, k);
     foot.x = point_of(triangle, weights);
     const Vector from = difference(x, foot.x);
     foot.square = dot(from, from);
@@ -170,7 +185,7 @@ void MovingSurface::set_behind(const Vector& x, SurfaceFoot& foot, const Row<dou
   }
   constexpr double least_cosine = 0.5;
   const Vector n = normal(corners(foot.face), foot.weights, rows);
-  foot.behind = dot(difference(x, foot.x), n) < -least_cosine * foot.distance() * length(n);
+  foot.behind = dot(difference(x, foot.x), n) < -least_cosine * std::sqrt(foot.square * dot(n, n));
 }
 
 Row<double> MovingSurface::weights_at(const SurfaceFoot& foot, const Vector& x,

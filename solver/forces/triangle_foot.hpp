@@ -11,14 +11,22 @@ namespace sandglass {
 /// The weights of the corners (m) of a triangle at the projection of x (m) onto its plane; they add up to
 /// one.
 inline Vector plane_weights(const std::array<Vector, 3>& X, const Vector& x) {
-  const Vector normal = cross(difference(X[1], X[0]), difference(X[2], X[0]));
-  const double area = dot(normal, normal);
-  Vector weights{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector &p = X[(i + 1) % 3], &q = X[(i + 2) % 3];
-    weights[i] = dot(cross(difference(q, p), difference(x, p)), normal) / area;
-  }
-  return weights;
+  const Vector ab = difference(X[1], X[0]), ac = difference(X[2], X[0]), from = difference(x, X[0]);
+  const Vector normal = cross(ab, ac);
+  const double inverse = 1.0 / dot(normal, normal);
+  const double b = dot(cross(from, ac), normal) * inverse, c = dot(cross(ab, from), normal) * inverse;
+  return {1.0 - b - c, b, c};
+}
+
+/// Whether the point with these weights is within its triangle, and not on its rim.
+inline bool is_within(const Vector& weights) {
+  return weights[0] > 0.0 && weights[1] > 0.0 && weights[2] > 0.0;
+}
+
+/// The share of the way from a to b (m) at which an edge is closest to x.
+inline double share_of_edge(const Vector& a, const Vector& b, const Vector& x) {
+  const Vector edge = difference(b, a);
+  return std::clamp(dot(difference(x, a), edge) / dot(edge, edge), 0.0, 1.0);
 }
 
 /// The mean (m) of the corners of a triangle with these weights.
@@ -34,14 +42,13 @@ struct TriangleFoot {
 
   static TriangleFoot of(const std::array<Vector, 3>& X, const Vector& x) {
     const Vector inside = plane_weights(X, x);
-    if (inside[0] > 0.0 && inside[1] > 0.0 && inside[2] > 0.0) return {inside, 0};
+    if (is_within(inside)) return {inside, 0};
     TriangleFoot nearest{{}, 0};
     double least = INFINITY;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
-      const Vector edge = difference(X[j], X[i]);
-      const double t = std::clamp(dot(difference(x, X[i]), edge) / dot(edge, edge), 0.0, 1.0);
-      const Vector from = difference(x, sum(X[i], t, edge));
+      const double t = share_of_edge(X[i], X[j], x);
+      const Vector from = difference(x, sum(X[i], t, difference(X[j], X[i])));
       const double square = dot(from, from);
       if (square >= least) continue;
       least = square;
