@@ -1,179 +1,492 @@
-/// Deformable bodies that touch each other or themselves: momentum, closed forms, energies.
+/// Deformable bodies that touch each other or themselves: momentum, closed forms, energies, the same bits
+/// after a checkpoint and for any number of threads.
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <numeric>
 
+#include "base/error.hpp"
+#include "forces/box_tree.hpp"
 #include "mesh/edges.hpp"
 #include "solve/central_difference.hpp"
+#include "solve/leapfrog.hpp"
+#include "solve/relaxation.hpp"
+#include "support/allocations.hpp"
+#include "support/kept_run.hpp"
+#include "support/pressed.hpp"
+#include "support/random_hexahedra.hpp"
 #include "support/two_bodies.hpp"
 
 namespace sandglass::verification {
 namespace {
 
+/// The contact of the two bodies.
+Contact pair_of(const std::string& set, const std::string& other, double friction = 0.0) {
+  return {.label = "pair", .set = set, .other = other, .friction = friction};
+}
+
 /// The sums of m v and m x cross v.
 struct Momentum {
   Vector linear{}, angular{};
 
-  Momentum(const Scene& scene, const std::vector<double>& masses, const NodalField& u, const NodalField& v) {
+  Momentum(const Model& model, const NodalField& u, const NodalField& v) {
     for (std::size_t n = 0; n < v.size(); ++n) {
-      const Vector x = sum(scene.mesh.points[n], 1.0, u[n]);
-      linear = sum(linear, masses[n], v[n]);
-      angular = sum(angular, masses[n], cross(x, v[n]));
+      const Vector x = sum(model.scene().mesh.points[n], 1.0, u[n]);
+      linear = sum(linear, model.masses()[n], v[n]);
+      angular = sum(angular, model.masses()[n], cross(x, v[n]));
     }
   }
 };
 
-TEST(SurfacePair, explore_patch) {
-  for (const auto& [below, above] : {std::pair{4, 3}, {3, 4}, {4, 4}, {5, 3}, {8, 6}, {6, 2}, {16, 12}}) {
+/// A box falls obliquely, turning, onto the corner region of another; neither is held.
+TwoBodies collision(double friction) {
+  TwoBodies bodies(box({1.0, 1.0, 1.0}, {4, 4, 4}),
+                   moved(box({0.8, 0.8, 0.8}, {3, 3, 3}), {0.33, 0.21, 1.02}),
+                   NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.4});
+  bodies.description.forces.of<Contact>() = {pair_of("lower", "upper", friction)};
+  bodies.description.velocities = {
+      {.set = "upper", .value = {-0.25, 0.15, -0.5}, .spin = {0.15, 0.25, 0.35}}};
+  bodies.description.dynamics.duration = 1.5;
+  bodies.description.dynamics.check_interval = 1;
+  return bodies;
+}
+
+/// Every force acts on two material points along the line between them, with friction too: momentum and its
+/// moment are kept up to the rounding of sums over a thousand steps. Energy is, to the error of steps.
+TEST(SurfacePair, keeps_momentum) {
+  for (const double friction : {0.0, 0.5}) {
+    const Scene scene = collision(friction).scene();
+    const Model model(scene, {"tl-perturbation"});
+    Recorder recorder;
+    const Motion motion = integrate(model, recorder);
+    const Momentum before(model, recorder.frames.front().u, recorder.frames.front().v),
+        after(model, motion.u, motion.v);
+    EXPECT_LT(distance(before.linear, after.linear), 1e-12 * length(before.linear));
+    EXPECT_LT(distance(before.angular, after.angular), 1e-12 * length(before.angular));
+    const double energy = total_energy(recorder.rows.front());
+    double largest_force = 0.0, lost = 0.0;
+    for (const HistoryRow& row : recorder.rows) {
+      const Vector& force = row.reactions.at("pair");
+      EXPECT_NEAR(total_energy(row), energy, 0.005 * energy);
+      EXPECT_GE(row.friction, lost);
+      largest_force = std::max(largest_force, -force[2]);
+      lost = row.friction;
+    }
+    EXPECT_GT(largest_force, 100.0);
+    EXPECT_EQ(lost > 0.01 * energy, friction > 0.0);
+  }
+}
+
+/// Without friction, forces are minus the derivative of the stored energy, at random displacements of the
+/// nodes that touch. Central differences err by the third derivative: 1e-6 of the largest force.
+TEST(SurfacePair, has_the_forces_of_its_energy) {
+  TwoBodies bodies(box({1.0, 1.0, 0.5}, {3, 3, 1}), moved(box({1.2, 1.2, 0.5}, {4, 4, 1}), {0.0, 0.1, 0.5}),
+                   NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.3});
+  bodies.description.forces.of<Contact>() = {pair_of("under", "over")};
+  const Scene scene = bodies.scene();
+  const auto* contact = contacts_of(scene.forces).front();
+  std::vector<int> places(scene.mesh.points.size());
+  std::iota(places.begin(), places.end(), 0);
+  RandomGeometry random(5);
+  Rows<double> u(places.size()), forces(places.size());
+  for (const int node : scene.sets.at("over"))
+    u[at(node)] = {{random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), random.uniform(-0.06, 0.0)}};
+  const auto energy = [&](AtNodes<Row<double>> sums) {
+    std::vector<Row<double>> memory(contact->memory());
+    contact->add_contact({}, NodalRows(u.data(), places), memory.data(), sums);
+    return contact->touch(memory.data()).stored;
+  };
+  EXPECT_GT(energy({forces.data(), places}), 0.0);
+  double largest = 0.0;
+  for (const Row<double>& force : forces) largest = std::max(largest, std::abs(force[2]));
+  Rows<double> ignored(places.size());
+  constexpr double step = 1e-6;
+  for (const int node : contact->nodes()) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      double& one = u[at(node)][i];
+      const double here = one;
+      one = here + step;
+      const double above = energy({ignored.data(), places});
+      one = here - step;
+      const double below = energy({ignored.data(), places});
+      one = here;
+      EXPECT_NEAR(forces[at(node)][i], -(above - below) / (2.0 * step), 1e-6 * largest) << node << " " << i;
+    }
+  }
+}
+
+/// Two equal bars collide (FrontISTR's tworods), with meshes that do not match: the stress rho c v acts from
+/// the time gap / 2v on for 2 L / c, then their velocities are exchanged. The scheme rings, so that means
+/// count; what rings does not return, half a percent here.
+TEST(SurfacePair, lets_bars_exchange_their_velocities) {
+  const double L = 20.0, gap = 0.4, E = 1000.0, rho = 0.1, v = 1.0, c = std::sqrt(E / rho),
+               stress = rho * c * v;
+  const double touch = 0.5 * gap / v, release = touch + 2.0 * L / c, mass = rho * L;
+  TwoBodies bars(box({1.0, 1.0, L}, {2, 2, 40}), moved(box({1.0, 1.0, L}, {3, 3, 40}), {0.0, 0.0, L + gap}),
+                 NeoHookean{.young_modulus = E, .poisson_ratio = 0.0}, rho);
+  bars.description.forces.of<Contact>() = {pair_of("under", "over")};
+  bars.description.velocities = {{.set = "lower", .value = {0.0, 0.0, v}},
+                                 {.set = "upper", .value = {0.0, 0.0, -v}}};
+  bars.description.dynamics.duration = 1.3 * release;
+  bars.description.dynamics.check_interval = 1;
+  const Scene scene = bars.scene();
+  const Model model(scene, {"linear"});
+  Recorder recorder;
+  const Motion motion = integrate(model, recorder);
+  double impulse = 0.0, plateau = 0.0, time = 0.0;
+  for (std::size_t n = 1; n < recorder.rows.size(); ++n) {
+    const HistoryRow &row = recorder.rows[n], &before = recorder.rows[n - 1];
+    const double force = -row.reactions.at("pair")[2], step = row.time - before.time;
+    EXPECT_LE(total_energy(row), (1.0 + 1e-9) * total_energy(recorder.rows.front()));
+    if (row.time < touch) {
+      EXPECT_EQ(force, 0.0);
+    }
+    impulse += 0.5 * step * (force - before.reactions.at("pair")[2]);
+    if (row.time < touch + 0.1 * (release - touch) || row.time > release - 0.1 * (release - touch)) continue;
+    plateau += step * force;
+    time += step;
+  }
+  EXPECT_NEAR(plateau / time, stress, 0.01 * stress);
+  EXPECT_NEAR(impulse, 2.0 * mass * v, 0.01 * 2.0 * mass * v);
+  EXPECT_EQ(recorder.rows.back().reactions.at("pair"), Vector{});
+  double momentum = 0.0;
+  for (const int node : bars.sets.at("lower")) momentum += model.masses()[at(node)] * motion.v[at(node)][2];
+  EXPECT_NEAR(momentum, -mass * v, 0.02 * mass * v);
+}
+
+/// The patch test of contact (SSNP121 of Code_Aster): a pressure on two plates whose meshes do not match.
+/// Each surface presses the other at the points of Simpson's rule, which does not see where elements of the
+/// other end: stresses of elements err by up to a percent here, where nodes alone err by 6 % (published).
+/// They are exact where all edges of one mesh meet edges or middles of elements of the other.
+TEST(SurfacePair, passes_the_patch_test_to_a_percent) {
+  struct Meshes {
+    int below, above;
+    double limit;
+  };
+  for (const auto& [below, above, limit] :
+       {Meshes{4, 4, 1e-3}, {6, 2, 1e-3}, {4, 3, 0.01}, {3, 4, 0.01}, {16, 12, 0.01}}) {
     const double E = 2e6, p = 1e5;
-    const NeoHookean law{.young_modulus = E, .poisson_ratio = 0.0};
-    TwoBodies plates(box({2.0, 1.0 , 1.0}, {below, 1, 4}),
-                     moved(box({2.0, 1.0, 1.0}, {above, 2, 4}), {0.0, 0.0, 1.0}), law);
+    TwoBodies plates(box({2.0, 1.0, 1.0}, {below, 1, 4}),
+                     moved(box({2.0, 1.0, 1.0}, {above, 2, 4}), {0.0, 0.0, 1.0}),
+                     NeoHookean{.young_modulus = E, .poisson_ratio = 0.0});
     Case& d = plates.description;
-    plates.sets["all"].resize(plates.mesh.points.size());
-    std::iota(plates.sets["all"].begin(), plates.sets["all"].end(), 0);
-    d.forces.of<Contact>() = {{.label = "pair", .set = "under", .other = "over"}};
-    d.forces.of<Pressure>() = {{.set = "top", .value = p}};
-    d.forces.of<Pressure>().front().curve = {{0.0, 0.05}, {0.0, 1.0}};
+    d.forces.of<Contact>() = {pair_of("under", "over")};
+    d.forces.of<Pressure>() = {{.set = "top", .value = p, .curve = {{0.0, 0.05}, {0.0, 1.0}}}};
     d.displacements = {{"foot", {}}, {"top", {}, {true, true, false}}};
     d.dynamics.duration = 1.0;
     d.dynamics.damping = 60.0;
     const Scene scene = plates.scene();
     Recorder recorder;
     const Motion motion = integrate(Model(scene, {"linear"}), recorder);
-    double off = 0.0, stress = 0.0, mean_off=0;
-    for (const int n : plates.sets["under"]) off = std::max(off, std::abs(motion.u[at(n)][2] + 0.05)), mean_off += motion.u[at(n)][2] / static_cast<double>(plates.sets["under"].size());
-    for (const Hexahedron& cell : plates.mesh.cells) {
-      double low = 0.0, high = 0.0, z = 0.0;
-      for (int I = 0; I < 8; ++I) {
-        (I < 4 ? low : high) += 0.25 * motion.u[at(cell[at(I)])][2];
-        z += 0.125 * plates.mesh.points[at(cell[at(I)])][2];
-      }
-      stress = std::max(stress, std::abs(E * (high - low) / 0.25 / p + 1.0));
+    const auto& interface = plates.sets.at("under");
+    double mean = 0.0, error = 0.0;
+    for (const int n : interface) mean += motion.u[at(n)][2] / static_cast<double>(interface.size());
+    for (const Hexahedron& cell : scene.mesh.cells) {
+      double shortened = 0.0;
+      for (int I = 0; I < 8; ++I) shortened += (I < 4 ? 0.25 : -0.25) * motion.u[at(cell[at(I)])][2];
+      error = std::max(error, std::abs(E * shortened / 0.25 / p - 1.0));
     }
-    fmt::print("{} {}: stress off by {}, interface by {} mean {}, depth {} force {} steps {}\n", below, above, stress, off / 0.05, mean_off,
-               recorder.rows.back().depth, recorder.rows.back().reactions.at("pair")[2], motion.steps);
+    EXPECT_LT(error, limit) << below << " and " << above;
+    EXPECT_NEAR(mean, -0.05, limit * 0.05);
+    EXPECT_NEAR(recorder.rows.back().reactions.at("pair")[2], -2.0 * p, 1e-5 * p);
   }
 }
 
-TEST(SurfacePair, explore_fold) {
-  const double L = 1.0, t = 0.2, gap = 0.1, R = 0.5 * (t + gap), bend = std::numbers::pi * R, way = 2.0 * L + bend;
-  for (const double penalty : {0.0, 1.0}) for (const double friction : {0.0, 0.3}) {
-    Column strip({1.0, 1.0, 1.0}, {1, 1, 1}, NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.45});
-    strip.mesh = lattice({25, 2, 3}, [&](const Vector& s) {
-      const double along = way * s[0], out = t * (s[1] - 0.5), y = 0.3 * s[2];
-      if (along < L) return Vector{along, y, -R - out};
-      if (along > L + bend) return Vector{way - along, y, R + out};
-      const double angle = (along - L) / R;
-      return Vector{L + (R + out) * std::sin(angle), y, -(R + out) * std::cos(angle)};
+/// Hertz: two equal spheres of R = 2 m, of different meshes, E* = 7.5e6 Pa: at the force F they touch up to a
+/// = (3 F R / (8 E*))^(1/3), with the pressure p0 = 3 F / (2 pi a^2) in the middle; d = 0.01 m would be a =
+/// 0.1 m between half-spaces. About four elements reach to a.
+TEST(SurfacePair, meets_the_closed_form_of_two_spheres) {
+  const double R = 2.0, E = 1.40625e7, modulus = 7.5e6, size = 2.5, d = 0.01;
+  const auto sphere = [&](int n, double side) {
+    const auto graded = [&](double s) { return size * std::sinh(4.5 * s) / std::sinh(4.5); };
+    return lattice({n, n, n}, [&](const Vector& s) {
+      const double x = graded(s[0]), y = graded(s[1]), depth = graded(side > 0.0 ? s[2] : 1.0 - s[2]),
+                   r = std::min(std::hypot(x, y), size);
+      return Vector{x, y, side * (depth + 0.5 * r * r / R * (1.0 - depth / size))};
     });
-    const auto on_boundary = boundary_nodes(strip.mesh);
-    std::vector<int> skin;
-    for (std::size_t n = 0; n < on_boundary.size(); ++n) if (on_boundary[n]) skin.push_back(static_cast<int>(n));
-    const double high = R + 0.5 * t;
-    strip.sets = {{"skin", skin}, {"foot", plane(strip.mesh.points, 2, -high)}, {"top", plane(strip.mesh.points, 2, high)}};
-    Case& d = strip.description;
+  };
+  Mesh lower = sphere(12, -1.0), upper = sphere(10, 1.0);
+  const auto first = static_cast<int>(lower.points.size());
+  TwoBodies balls(std::move(lower), std::move(upper), NeoHookean{.young_modulus = E, .poisson_ratio = 0.25},
+                  E);
+  const auto& points = balls.mesh.points;
+  const auto surface = [&](int n, double s) {  // of a lattice whose third coordinate is s
+    std::vector<int> nodes;
+    for (int k = 0; k < (n + 1) * (n + 1); ++k)
+      nodes.push_back(s > 0.0 ? first + k : n * (n + 1) * (n + 1) + k);
+    return nodes;
+  };
+  balls.sets["below"] = surface(12, -1.0);
+  balls.sets["above"] = surface(10, 1.0);
+  balls.sets["left"] = plane(points, 0, 0.0);
+  balls.sets["front"] = plane(points, 1, 0.0);
+  Case& c = balls.description;
+  c.displacements = {{"foot", {}},
+                     {"top", {0.0, 0.0, -d}},
+                     {"left", {}, {true, false, false}},
+                     {"front", {}, {false, true, false}}};
+  c.forces.of<Contact>() = {pair_of("below", "above")};
+  c.dynamics.duration = 16.0;
+  c.dynamics.ramp_time = 5.0;
+  c.dynamics.damping = 1.2;
+  const Scene scene = balls.scene();
+  const Model model(scene, {"linear"});
+  Recorder recorder;
+  const Motion motion = integrate(model, recorder);
+  const Pressed ball(
+      model, motion.u, scene.sets.at("below"), [](const Vector& X) { return std::hypot(X[0], X[1]); }, 0.2);
+  const double F = 4.0 * ball.force, a = std::cbrt(3.0 * F * R / (8.0 * modulus)),
+               p0 = 1.5 * F / (std::numbers::pi * a * a);
+  fmt::print("F {} ({}), a {} ({}) p0 {} ({}) steps {} edge {} s {} depth {}\n", F,
+             -4 * recorder.rows.back().reactions.at("pair")[2], std::sqrt(2.5 * ball.square_arm), a, 0.0, p0,
+             motion.steps, shortest_edge(scene.mesh), motion.seconds, recorder.rows.back().depth);
+  EXPECT_NEAR(F, 1e4, 0.05 * 1e4);
+  EXPECT_NEAR(std::sqrt(2.5 * ball.square_arm), a, 0.02 * a);
+}
+
+constexpr double coefficient = 0.3, gravity = 10.0;
+
+/// A slab on a rough deformable floor, under a weight that pulls it sideways by a share of itself.
+TwoBodies slab(double share, double speed, double duration) {
+  TwoBodies bodies(box({3.0, 1.5, 0.2}, {8, 4, 1}), moved(box({1.0, 1.0, 0.2}, {4, 4, 2}), {0.2, 0.25, 0.2}),
+                   NeoHookean{.young_modulus = 1e6, .poisson_ratio = 0.3});
+  Case& d = bodies.description;
+  d.displacements = {{"foot", {}}};
+  d.forces.of<Gravity>() = {{{share * gravity, 0.0, -gravity}, {{0.0, 1.0}, {1.0, 1.0}}}};
+  d.forces.of<Contact>() = {pair_of("upper", "lower", coefficient)};
+  if (speed > 0.0) d.velocities = {{.set = "upper", .value = {speed, 0.0, 0.0}}};
+  d.dynamics.duration = duration;
+  d.dynamics.check_interval = 1;
+  return bodies;
+}
+
+/// The mean of m u over the mass, of some nodes.
+Vector centre_of(const std::vector<int>& nodes, const NodalField& field, const std::vector<double>& masses) {
+  Vector centre{};
+  double mass = 0.0;
+  for (const int node : nodes) {
+    mass += masses[at(node)];
+    centre = sum(centre, masses[at(node)], field[at(node)]);
+  }
+  return {centre[0] / mass, centre[1] / mass, centre[2] / mass};
+}
+
+/// Friction stops a slab after the way v^2 / (2 mu g) and takes its energy; its force never exceeds the
+/// coefficient times the normal force. The slab bounces on its elasticity, which a few percent allow for.
+TEST(SurfacePair, stops_a_slab_by_friction) {
+  const double speed = 2.0, time = speed / (coefficient * gravity), way = 0.5 * speed * time;
+  const TwoBodies bodies = slab(0.0, speed, 1.5 * time);
+  const Scene scene = bodies.scene();
+  const Model model(scene, {"tl-perturbation"});
+  Recorder recorder;
+  const Motion motion = integrate(model, recorder);
+  const double mass = 200.0, energy = 0.5 * mass * speed * speed;
+  EXPECT_NEAR(centre_of(bodies.sets.at("upper"), motion.u, model.masses())[0], way, 0.03 * way);
+  EXPECT_NEAR(recorder.rows.back().friction, energy, 0.05 * energy);
+  for (const HistoryRow& row : recorder.rows) {
+    const Vector& force = row.reactions.at("pair");
+    EXPECT_LE(std::hypot(force[0], force[1]), coefficient * force[2] * 1.02 + 1.0);
+    EXPECT_LE(total_energy(row) - row.external_work, 1.01 * total_energy(recorder.rows.front()));
+  }
+}
+
+/// Below the coefficient of friction the slab sticks: once vibrations are damped it does not creep.
+TEST(SurfacePair, holds_a_slab_by_friction) {
+  TwoBodies bodies = slab(0.8 * coefficient, 0.0, 4.0);
+  bodies.description.dynamics.damping = 40.0;
+  bodies.description.dynamics.frames = 4;
+  const Scene scene = bodies.scene();
+  Recorder recorder;
+  integrate(Model(scene, {"tl-perturbation"}), recorder);
+  const NodalField &middle = recorder.frames[2].u, &end = recorder.frames[4].u;
+  for (std::size_t n = 0; n < end.size(); ++n) EXPECT_LT(distance(middle[n], end[n]), 1e-10) << n;
+  const Vector force = recorder.rows.back().reactions.at("pair");
+  EXPECT_NEAR(force[2], 200.0 * gravity, 1e-3);
+  EXPECT_NEAR(force[0], -0.8 * coefficient * force[2], 1e-3);
+}
+
+/// A strip that is bent by half a turn, so that its legs face each other across a gap.
+struct BentStrip {
+  static constexpr double length = 1.0, thickness = 0.2, gap = 0.1;
+  Column column{{1.0, 1.0, 1.0}, {1, 1, 1}, NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.45}};
+
+  explicit BentStrip(double friction) {
+    constexpr double R = 0.5 * (thickness + gap), bend = std::numbers::pi * R, way = 2.0 * length + bend;
+    Mesh& mesh = column.mesh;
+    mesh = lattice({25, 2, 3}, [&](const Vector& s) {
+      const double along = way * s[0], r = R + thickness * (s[1] - 0.5), y = 0.3 * s[2];
+      if (along < length) return Vector{along, y, -r};
+      if (along > length + bend) return Vector{way - along, y, r};
+      const double angle = (along - length) / R;
+      return Vector{length + r * std::sin(angle), y, -r * std::cos(angle)};
+    });
+    const auto on_boundary = boundary_nodes(mesh);
+    auto& sets = column.sets;
+    sets = {{"skin", {}},
+            {"foot", plane(mesh.points, 2, -0.5 * gap - thickness)},
+            {"top", plane(mesh.points, 2, 0.5 * gap + thickness)},
+            {"low",
+             nodes_where(mesh.points,
+                         [](const Vector& X) { return std::abs(X[2] + 0.5 * gap) < 1e-9 && X[0] < length; })},
+            {"high", nodes_where(mesh.points, [](const Vector& X) {
+               return std::abs(X[2] - 0.5 * gap) < 1e-9 && X[0] < length;
+             })}};
+    for (std::size_t n = 0; n < on_boundary.size(); ++n) {
+      if (on_boundary[n]) sets["skin"].push_back(static_cast<int>(n));
+    }
+    Case& d = column.description;
     d.quasi_static = false;
     d.displacements = {{"foot", {}}, {"top", {0.05, 0.02, -0.16}}};
-    if (penalty > 0.0) d.forces.of<Contact>() = {{.label = "self", .set = "skin", .friction = friction, .penalty = penalty}};
+    d.forces.of<Contact>() = {{.label = "self", .set = "skin", .friction = friction}};
     d.dynamics.duration = 1.0;
     d.dynamics.check_interval = 5;
-    const Scene scene = strip.scene();
+  }
+
+  /// The smallest height (m) of the upper leg's nodes over those of the lower one that are next to them.
+  double narrowest(const NodalField& u) const {
+    const auto at_end = [&](int node) { return sum(column.mesh.points[at(node)], 1.0, u[at(node)]); };
+    double narrowest = INFINITY;
+    for (const int node : column.sets.at("high")) {
+      const Vector x = at_end(node);
+      double nearest = INFINITY, height = 0.0;
+      for (const int below : column.sets.at("low")) {
+        const Vector y = at_end(below);
+        const double r = std::hypot(x[0] - y[0], x[1] - y[1]);
+        if (r > nearest) continue;
+        nearest = r;
+        height = x[2] - y[2];
+      }
+      narrowest = std::min(narrowest, height);
+    }
+    return narrowest;
+  }
+};
+
+/// The legs are pressed together by 1.6 times the gap. Without contact they intersect by three fifths of the
+/// gap; with it by as much as they are compressed, by 15 %, over the penalty: 0.15 h, and more at their ends.
+/// Forces balance each other, and work is in the energy.
+TEST(SurfacePair, keeps_a_body_out_of_itself) {
+  for (const double friction : {0.0, 0.3}) {
+    BentStrip strip(friction);
+    const Scene scene = strip.column.scene();
     Recorder recorder;
-    try {
     const Motion motion = integrate(Model(scene, {"tl-perturbation"}), recorder);
-    double depth = 0.0, cross = 1.0;
-    for (const HistoryRow& row : recorder.rows) depth = std::max(depth, row.depth);
-    for (std::size_t n = 0; n < motion.u.size(); ++n) {
-      const Vector& X = strip.mesh.points[n];
-      if (std::abs(X[2] - 0.05) > 1e-9 || X[0] > L) continue;
-      const Vector up = sum(X, 1.0, motion.u[n]);
-      double nearest = 1e9, z = 0;
-      for (std::size_t m = 0; m < motion.u.size(); ++m) {
-        if (std::abs(strip.mesh.points[m][2] + 0.05) > 1e-9) continue;
-        const Vector lo = sum(strip.mesh.points[m], 1.0, motion.u[m]);
-        const double r = std::hypot(up[0] - lo[0], up[1] - lo[1]);
-        if (r < nearest) nearest = r, z = lo[2];
-      }
-      cross = std::min(cross, up[2] - z);
+    const double edge = shortest_edge(scene.mesh);
+    EXPECT_GT(strip.narrowest(motion.u), -0.4 * edge);
+    for (const HistoryRow& row : recorder.rows) {
+      EXPECT_LT(row.depth, 0.4 * edge);
+      EXPECT_EQ(row.reactions.at("self"), Vector{});
     }
-    const HistoryRow& last = recorder.rows.back();
-    fmt::print("penalty {} friction {}: steps {} seconds {} depth {} gap at end {} energy {} work {} contact {} friction {} repeated {} edge {}\n", penalty, friction, motion.steps, motion.seconds, depth, cross,
-      total_energy(last), last.external_work, last.contact, last.friction, motion.repeated, shortest_edge(scene.mesh));
-    } catch (const std::exception& error) { fmt::print("{}\n", error.what()); }
+    EXPECT_LT(energy_imbalance(recorder.rows), 1e-3);
+    EXPECT_EQ(recorder.rows.back().friction > 0.0, friction > 0.0);
+    strip.column.description.forces.of<Contact>().clear();
+    Recorder silent;
+    EXPECT_LT(strip.narrowest(integrate(Model(strip.column.scene(), {"tl-perturbation"}), silent).u),
+              -0.5 * BentStrip::gap);
   }
 }
 
-TEST(SurfacePair, explore_bars) {
-  for (const double penalty : {0.1, 1.0, 10.0}) {
-    const NeoHookean law{.young_modulus = 1000.0, .poisson_ratio = 0.0};
-    TwoBodies bars(box({1.0, 1.0, 20.0}, {2, 2, 40}),
-                   moved(box({1.0, 1.0, 20.0}, {3, 3, 40}), {0.0, 0.0, 20.4}), law, 0.1);
-    bars.description.forces.of<Contact>() = {{.label = "pair", .set = "under", .other = "over", .penalty = penalty}};
-    bars.description.velocities = {{.set = "lower", .value = {0.0, 0.0, 1.0}},
-                                   {.set = "upper", .value = {0.0, 0.0, -1.0}}};
-    bars.description.dynamics.duration = 0.8;
-    bars.description.dynamics.check_interval = 1;
-    const Scene scene = bars.scene();
-    const Model model(scene, {"linear"});
-    Recorder recorder;
-    const Motion motion = integrate(model, recorder);
-    double impulse = 0.0, plateau = 0.0, time = 0.0, most = 0.0, depth = 0.0;
-    for (std::size_t n = 1; n < recorder.rows.size(); ++n) {
-      const HistoryRow &row = recorder.rows[n], &before = recorder.rows[n - 1];
-      const double f = -row.reactions.at("pair")[2], step = row.time - before.time;
-      impulse += 0.5 * step * (f - before.reactions.at("pair")[2]);
-      most = std::max(most, total_energy(row) / total_energy(recorder.rows.front()));
-      depth = std::max(depth, row.depth);
-      if (row.time > 0.24 && row.time < 0.56) plateau += step * f, time += step;
-    }
-    double v[2] = {0, 0}, m[2] = {0, 0};
-    for (std::size_t n = 0; n < motion.v.size(); ++n) {
-      const int k = n < bars.sets["lower"].size() ? 0 : 1;
-      v[k] += model.masses()[n] * motion.v[n][2];
-      m[k] += model.masses()[n];
-    }
-    fmt::print("penalty {} steps {} plateau {} impulse {} of 4, energy {} depth {} v {} {} end {}\n", penalty, motion.steps,
-               plateau / time, impulse, most, depth, v[0] / m[0], v[1] / m[1],
-               total_energy(recorder.rows.back()) / total_energy(recorder.rows.front()));
+/// Steps allocate nothing, and have the same bits for any number of threads and after any checkpoint.
+TEST(SurfacePair, takes_steps_like_any_force) {
+  TwoBodies bodies = collision(0.3);
+  bodies.description.dynamics.duration = 0.3;
+  bodies.description.dynamics.check_interval = 10;
+  const Scene scene = bodies.scene();
+  const Model model(scene, {"tl-perturbation"});
+  const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
+  Leapfrog<double> leapfrog(model, elements, 0.0);
+  leapfrog.set_initial_velocities(scene.initial_velocities);
+  const auto step = [&] { leapfrog.advance(5e-3, [](Body<double>& body) { body.impose(1.0, 0.0); }); };
+  step();
+  const long before = allocations();
+  for (int k = 0; k < 20; ++k) step();
+  EXPECT_EQ(allocations(), before);
+  EXPECT_LT(leapfrog.body().touch("pair")->force[2], 0.0);
+  const auto moved = [&](int threads) {
+    Recorder silent;
+    return integrate(Model(scene, {"tl-perturbation", {}, Precision::double_precision, threads}), silent).u;
+  };
+  EXPECT_EQ(moved(1), moved(2));
+  KeepingRecorder whole;
+  const NodalField answer = integrate(model, whole).u;
+  ASSERT_GT(whole.kept().size(), 2U);
+  for (const RunSoFar& kept : whole.kept()) {
+    KeepingRecorder resumed(kept);
+    EXPECT_EQ(integrate(model, resumed, &kept.point).u, answer);
+    EXPECT_EQ(resumed.run().history.back().friction, whole.run().history.back().friction);
   }
 }
 
-TEST(SurfacePair, explore_momentum) {
-  for (const double friction : {0.0, 0.5}) {
-    for (const char* method : {"linear", "tl-perturbation", "tl-mean-dilatation", "tl-full"}) {
-      const NeoHookean law{.young_modulus = 1e4, .poisson_ratio = 0.4};
-      TwoBodies bodies(box({1.0, 1.0, 1.0}, {4, 4, 4}),
-                       moved(box({0.8, 0.8, 0.8}, {3, 3, 3}), {0.33, 0.21, 1.02}), law);
-      bodies.description.forces.of<Contact>() = {
-          {.label = "pair", .set = "lower", .other = "upper", .friction = friction}};
-      bodies.description.velocities = {{.set = "upper", .value = {-0.5, 0.3, -1.0}, .spin = {0.3, 0.5, 0.7}}};
-      bodies.description.dynamics.duration = 1.5;
-      bodies.description.dynamics.check_interval = 1;
-      const Scene scene = bodies.scene();
-      try {
-        const Model model(scene, {method});
-        Recorder recorder;
-        const Motion motion = integrate(model, recorder);
-        const Momentum before(scene, model.masses(), recorder.frames.front().u, recorder.frames.front().v),
-            after(scene, model.masses(), motion.u, motion.v);
-        double most = 0.0, depth = 0.0, force = 0.0;
-        for (const HistoryRow& row : recorder.rows) {
-          most = std::max(most, total_energy(row));
-          depth = std::max(depth, row.depth);
-          force = std::max(force, std::abs(row.reactions.at("pair")[2]));
-        }
-        fmt::print("{} {}: steps {} linear {} {} angular {} {} energy {} {} of {} friction {} depth {} force {}\n", method, friction,
-                   motion.steps, distance(before.linear, after.linear), length(before.linear),
-                   distance(before.angular, after.angular), length(before.angular), most,
-                   total_energy(recorder.rows.back()), total_energy(recorder.rows.front()),
-                   recorder.rows.back().friction, depth, force);
-      } catch (const std::exception& error) {
-        fmt::print("{}: {}\n", method, error.what());
-      }
+/// The search of the closest of n^2 faces compares a number of them that does not grow with n.
+TEST(BoxTree, compares_few_of_many) {
+  for (const int n : {8, 32, 128}) {
+    NodalField centres;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) centres.push_back({i + 0.5, j + 0.5, 0.0});
     }
+    const BoxTree tree(centres, 1);
+    std::vector<Row<double>> boxes(tree.rows());
+    tree.fit(boxes.data(), [&](int item, const auto& grow) {
+      grow(sum(centres[at(item)], 1.0, {0.5, 0.5, 0.0}));
+      grow(sum(centres[at(item)], 1.0, {-0.5, -0.5, 0.0}));
+    });
+    long compared = 0, found = 0;
+    for (const Vector& centre : centres) {
+      const Vector x = sum(centre, 1.0, {0.2, -0.1, 0.3});
+      double square = 1.0;
+      int closest = -1;
+      tree.search(x, boxes.data(), square, [&](int item) {
+        ++compared;
+        const Vector from = difference(x, centres[at(item)]);
+        if (dot(from, from) >= square) return;
+        square = dot(from, from);
+        closest = item;
+      });
+      if (closest >= 0 && centres[at(closest)] == centre) ++found;
+    }
+    EXPECT_EQ(found, n * n);
+    EXPECT_LE(compared, 3 * n * n);
+  }
+}
+
+/// What two surfaces can not be is refused with the place.
+TEST(SurfacePair, names_what_is_wrong) {
+  const NeoHookean law{.young_modulus = 1e4, .poisson_ratio = 0.3};
+  const auto message = [&](double gap, const Contact& contact) {
+    TwoBodies bodies(box({1.0, 1.0, 0.5}, {2, 2, 2}),
+                     moved(box({1.0, 1.0, 0.5}, {3, 3, 2}), {0.0, 0.0, 0.5 + gap}), law);
+    bodies.sets["points"] = {0, 5};
+    bodies.description.forces.of<Contact>() = {contact};
+    try {
+      bodies.scene();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message(0.0, pair_of("under", "over")), "");
+  const auto expect = [&](double gap, const Contact& contact, const std::string& text) {
+    const std::string all = message(gap, contact);
+    EXPECT_NE(all.find(text), std::string::npos) << all;
+    EXPECT_NE(all.find("llowed"), std::string::npos) << all;
+  };
+  expect(-0.03, pair_of("lower", "upper"), "is 0.03 m inside of what it may touch at the start");
+  expect(0.0, pair_of("lower", "under"), "is on both surfaces, 'lower' and 'under'");
+  EXPECT_NE(message(0.0, pair_of("under", "points")).find("contact.other = 'points' has no boundary face"),
+            std::string::npos);
+  EXPECT_NE(message(0.0, pair_of("under", "nowhere")).find("contact.other = 'nowhere'"), std::string::npos);
+  TwoBodies at_rest = collision(0.0);
+  at_rest.description.quasi_static = true;
+  at_rest.description.displacements = {{"foot", {}}, {"top", {}}};
+  const Scene scene = at_rest.scene();
+  Recorder silent;
+  try {
+    relax(Model(scene, {"tl-perturbation"}), silent);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("[[contact]] has no static equilibrium"), std::string::npos)
+        << error.what();
   }
 }
 

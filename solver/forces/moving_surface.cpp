@@ -78,6 +78,7 @@ MovingSurface::MovingSurface(const NodalField& points, const std::vector<Quadril
   constexpr std::array<std::array<double, 2>, 4> corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (const Quadrilateral& face : faces_) {
     const auto X = corners_of(X_, face);
+    areas_.push_back(0.0);
     for (int place = 0; place < 9; ++place) {
       const double xi = place % 3 - 1, eta = place / 3 - 1;
       Row<double> weights;
@@ -94,7 +95,9 @@ MovingSurface::MovingSurface(const NodalField& points, const std::vector<Quadril
       const double simpson = (xi == 0.0 ? 4.0 : 1.0) * (eta == 0.0 ? 4.0 : 1.0) / 9.0;
       const auto [one, is_new] = known.try_emplace(nodes, points_.size());
       if (is_new) points_.push_back({face, weights, 0.0});
-      points_[one->second].area += simpson * length(cross(along_xi, along_eta));
+      const double area = simpson * length(cross(along_xi, along_eta));
+      points_[one->second].area += area;
+      areas_.back() += area;
     }
   }
 }

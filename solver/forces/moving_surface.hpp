@@ -57,6 +57,9 @@ class MovingSurface {
     return mean(nodes, weights, rows + nodes_.size());
   }
 
+  /// The undeformed area of a face, m^2.
+  double area(int face) const { return areas_[at(face)]; }
+
   /// The corners of a face.
   const Quadrilateral& corners(int face) const { return faces_[at(face)]; }
 
@@ -84,6 +87,7 @@ class MovingSurface {
   std::vector<int> nodes_;
   NodalField X_;                             // m
   std::vector<Quadrilateral> faces_;         // by places in nodes_
+  std::vector<double> areas_;                // of faces, m^2
   std::vector<std::array<bool, 4>> on_rim_;  // whether no other face has this edge of a face
   std::vector<SurfacePoint> points_;
   BoxTree tree_;

@@ -1,6 +1,7 @@
 #include "forces/surface_pair.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace sandglass {
 
@@ -16,10 +17,10 @@ std::vector<int> nodes_of_all(const std::vector<std::vector<Quadrilateral>>& sur
   return nodes;
 }
 
-/// What surface points remember: until which way of the surfaces they touch nothing, and whether they touch;
-/// with friction then the weights of the point of the face to which a spring pulls them, and its extension
-/// along the face, m.
-enum Remembered : std::size_t { clear_until = 0, face_of_anchor = 1, touches = 3 };
+/// What surface points remember: until which way of the surfaces they touch nothing, m; the stiffness of the
+/// spring that pulls them, N/m, zero if they do not touch. With friction also the face with the point to
+/// which it pulls, in further rows its weights, and the extension along the face, m.
+enum Remembered : std::size_t { clear_until = 0, face_of_anchor = 1, stiffness_now = 2 };
 
 }  // namespace
 
@@ -75,8 +76,8 @@ void SurfacePair::for_each_touch(NodalRows u, Row<double>* rows, const Use& use)
       of_point[0][clear_until] = foot.behind ? way : way + 0.5 * foot.distance();
       if (foot.behind) {
         use(side, k, x, foot, of_point);
-      } else if (of_point[0][touches] != 0.0) {
-        let_go(0.5 * stiffness_ * point.area, of_point, memory);
+      } else if (of_point[0][stiffness_now] > 0.0) {
+        let_go(of_point, memory);
       }
     }
   }
@@ -92,12 +93,12 @@ void SurfacePair::add_contact(Factors /*factors*/, NodalRows u, Row<double>* row
         const MovingSurface &from = surfaces_[side.from], &onto = surfaces_[side.onto];
         const SurfacePoint& point = from.points()[k];
         const Row<double>* of_onto = memory.others + rows_of_[side.onto];
-        const double stiffness = 0.5 * stiffness_ * point.area;
+        const double stiffness = 0.5 * stiffness_ * std::min(point.area, onto.area(foot.face));
         memory.moves[3] = std::max(memory.moves[3], foot.distance());
         const Row<double> anchor = contact_.friction > 0.0
                                        ? hold(x, foot, stiffness, of_point, of_onto, memory, onto)
                                        : foot.weights;
-        of_point[0][touches] = 1.0;
+        of_point[0][stiffness_now] = stiffness;
         const Quadrilateral& corners = onto.corners(foot.face);
         const Vector pull = difference(MovingSurface::position(corners, anchor, of_onto), x);
         memory.pushes[3] += 0.5 * stiffness * dot(pull, pull);
@@ -118,7 +119,7 @@ Row<double> SurfacePair::hold(const Vector& x, const SurfaceFoot& foot, double s
                               const MovingSurface& surface) const {
   Row<double>&anchor = of_point[1], &stretch = of_point[2];
   Vector along{};
-  if (of_point[0][touches] != 0.0) {
+  if (of_point[0][stiffness_now] > 0.0) {
     const Quadrilateral& corners = surface.corners(static_cast<int>(of_point[0][face_of_anchor]));
     along = difference(foot.x, MovingSurface::position(corners, anchor, onto));
     const Vector inwards = difference(foot.x, x);
@@ -134,8 +135,8 @@ Row<double> SurfacePair::hold(const Vector& x, const SurfaceFoot& foot, double s
   return anchor;
 }
 
-void SurfacePair::let_go(double stiffness, Row<double>* of_point, ContactMemory& memory) const {
-  of_point[0][touches] = 0.0;
+void SurfacePair::let_go(Row<double>* of_point, ContactMemory& memory) const {
+  const double stiffness = std::exchange(of_point[0][stiffness_now], 0.0);
   if (by_point() == 1) return;
   const Row<double>& stretch = of_point[2];
   for (std::size_t i = 0; i < 3; ++i) memory.sums[0] += 0.5 * stiffness * stretch[i] * stretch[i];
@@ -145,16 +146,17 @@ void SurfacePair::add_rates(Factors /*largest*/, const std::vector<double>& mass
                             std::vector<LoadRates>& rates) const {
   for (const Side& side : sides_) {
     const MovingSurface& surface = surfaces_[side.from];
-    std::vector<double> areas(surface.nodes().size());
+    std::vector<double> areas(surface.nodes().size()), largest(areas.size());
     for (const SurfacePoint& point : surface.points()) {
       for (std::size_t I = 0; I < 4; ++I) areas[at(point.nodes[I])] += point.weights[I] * point.area;
     }
-    double largest_area = 0.0;
-    for (const SurfacePoint& point : surfaces_[side.onto].points())
-      largest_area = std::max(largest_area, point.area);
+    for (int face = 0; face < static_cast<int>(faces_[side.from].size()); ++face) {
+      for (const int node : surface.corners(face))
+        largest[at(node)] = std::max(largest[at(node)], surface.area(face));
+    }
     for (std::size_t n = 0; n < areas.size(); ++n) {
       const std::size_t node = at(surface.nodes()[n]);
-      rates[node].square += rate_of_one_sided * stiffness_ * (2.0 * areas[n] + largest_area) / masses[node];
+      rates[node].square += rate_of_one_sided * stiffness_ * (2.0 * areas[n] + largest[n]) / masses[node];
     }
   }
 }

@@ -37,8 +37,8 @@ class SurfacePair final : public ContactForce {
   double half_thickness() const override { return reach_; }
   double travel() const override { return 0.0; }
 
-  /// A spring between material points has at most twice the stiffness on each node that it has at its points;
-  /// how many points of the other side pull a node is bounded by its area and one point more.
+  /// A spring between material points has at most twice the stiffness on each node that it has at its points.
+  /// Points of the other side pull a node with the stiffness of its area and, where they are few, of a face.
   void add_rates(Factors largest, const std::vector<double>& masses,
                  std::vector<LoadRates>& rates) const override;
 
@@ -66,7 +66,7 @@ class SurfacePair final : public ContactForce {
 
   Row<double> hold(const Vector& x, const SurfaceFoot& foot, double stiffness, Row<double>* of_point,
                    const Row<double>* onto, ContactMemory& memory, const MovingSurface& surface) const;
-  void let_go(double stiffness, Row<double>* of_point, ContactMemory& memory) const;
+  void let_go(Row<double>* of_point, ContactMemory& memory) const;
 
   Contact contact_;
   double stiffness_, reach_;
