@@ -12,7 +12,7 @@ namespace {
 std::vector<int> sorted_nodes_of(const std::vector<Quadrilateral>& faces) {
   std::vector<int> nodes = nodes_of(faces);
   std::ranges::sort(nodes);
-  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
 
@@ -70,17 +70,18 @@ Row<double> of_corners(const Vector& weights, std::size_t k) {
 
 MovingSurface::MovingSurface(const NodalField& points, const std::vector<Quadrilateral>& faces)
     : nodes_(sorted_nodes_of(faces)),
-      X_(values_at(nodes_, points)),
+      undeformed_(values_at(nodes_, points)),
       faces_(renumbered(faces, nodes_)),
       on_rim_(rim_of(faces_)),
-      tree_(centres_of(faces_, X_), 1) {
+      tree_(centres_of(faces_, undeformed_), 1) {
   std::map<std::vector<int>, std::size_t> known;  // points by their nodes
   constexpr std::array<std::array<double, 2>, 4> corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (const Quadrilateral& face : faces_) {
-    const auto X = corners_of(X_, face);
+    const auto X = corners_of(undeformed_, face);
     areas_.push_back(0.0);
     for (int place = 0; place < 9; ++place) {
-      const double xi = place % 3 - 1, eta = place / 3 - 1;
+      const int column = place % 3 - 1, row = place / 3 - 1;
+      const double xi = column, eta = row;
       Row<double> weights;
       Vector along_xi{}, along_eta{};
       std::vector<int> nodes;
@@ -94,7 +95,7 @@ MovingSurface::MovingSurface(const NodalField& points, const std::vector<Quadril
       std::ranges::sort(nodes);
       const double simpson = (xi == 0.0 ? 4.0 : 1.0) * (eta == 0.0 ? 4.0 : 1.0) / 9.0;
       const auto [one, is_new] = known.try_emplace(nodes, points_.size());
-      if (is_new) points_.push_back({face, weights, 0.0});
+      if (is_new) points_.push_back({weights, 0.0, face});
       const double area = simpson * length(cross(along_xi, along_eta));
       points_[one->second].area += area;
       areas_.back() += area;
@@ -108,7 +109,7 @@ double MovingSurface::move(NodalRows u, Row<double>* rows) const {
     const Row<double>& of_node = u[nodes_[n]];
     double square = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double x = X_[n][i] + of_node[i], way = x - rows[n][i];
+      const double x = undeformed_[n][i] + of_node[i], way = x - rows[n][i];
       rows[n][i] = x;
       square += way * way;
     }
@@ -224,7 +225,7 @@ std::vector<std::vector<int>> faces_around(const MovingSurface& surface,
       }
     }
     std::ranges::sort(found);
-    found.erase(std::ranges::unique(found).begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
   }
   return around;
 }

@@ -8,9 +8,9 @@ namespace sandglass {
 /// A material point of a surface: the mean of the corners of a face with weights that add up to one. It is a
 /// corner of faces, the middle of an edge or of a face.
 struct SurfacePoint {
-  Quadrilateral nodes;  ///< by their places in the surface
   Row<double> weights;
-  double area;  ///< its share of the undeformed surface by Simpson's rule, m^2
+  double area;          ///< its share of the undeformed surface by Simpson's rule, m^2
+  Quadrilateral nodes;  ///< by their places in the surface
 };
 
 /// The point of a surface that is closest to another.
@@ -85,7 +85,7 @@ class MovingSurface {
   void set_behind(const Vector& x, SurfaceFoot& foot, const Row<double>* rows) const;
 
   std::vector<int> nodes_;
-  NodalField X_;                             // m
+  NodalField undeformed_;                    // m
   std::vector<Quadrilateral> faces_;         // by places in nodes_
   std::vector<double> areas_;                // of faces, m^2
   std::vector<std::array<bool, 4>> on_rim_;  // whether no other face has this edge of a face
