@@ -17,6 +17,7 @@ struct Touch {
   double dissipated = 0.0;     ///< since the start, J
   double worked = 0.0;         ///< by an obstacle that moves nodes, since the start, J
   int contrary = 0;            ///< nodes whose fixed contact pulls them, or lets them penetrate
+  int passed = -1;             ///< a node that went deeper than the contact can follow; -1: none
 };
 
 /// The rows that every contact keeps, before its own.

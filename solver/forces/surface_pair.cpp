@@ -17,10 +17,21 @@ std::vector<int> nodes_of_all(const std::vector<std::vector<Quadrilateral>>& sur
   return nodes;
 }
 
-/// What surface points remember: until which way of the surfaces they touch nothing, m; the stiffness of the
-/// spring that pulls them, N/m, zero if they do not touch. With friction also the face with the point to
-/// which it pulls, in further rows its weights, and the extension along the face, m.
-enum Remembered : std::size_t { clear_until = 0, face_of_anchor = 1, stiffness_now = 2 };
+/// What a pair remembers: the sum of the largest ways of nodes, m, and one more than the number of a node
+/// that passed through.
+enum OfPair : std::size_t { way_so_far = 0, passed_node = 1 };
+
+/// What surface points remember: until which way they touch nothing, m; the stiffness of the spring that
+/// pulls them, N/m, zero if they do not touch; their depth then, m. With friction also the face with the
+/// point to which it pulls, in further rows its weights, and the extension along the face, m.
+enum Remembered : std::size_t { clear_until = 0, face_of_anchor = 1, stiffness_now = 2, last_depth = 3 };
+
+/// A node with the largest weight.
+int node_of(const MovingSurface& surface, const SurfacePoint& point) {
+  const auto& weights = point.weights.x;
+  const auto I = static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
+  return surface.nodes()[at(point.nodes[I])];
+}
 
 }  // namespace
 
@@ -31,7 +42,7 @@ SurfacePair::SurfacePair(const Contact& contact, double stiffness, double reach,
       stiffness_(stiffness),
       reach_(reach),
       faces_(std::move(surfaces)),
-      memory_(ContactMemory::own + 1) {  // a row for the way of the surfaces
+      memory_(ContactMemory::own + 1) {  // a row of the pair
   for (const auto& faces : faces_) {
     surfaces_.emplace_back(points, faces);
     rows_of_.push_back(memory_ - ContactMemory::own);
@@ -49,10 +60,16 @@ std::size_t SurfacePair::memory() const {
   return memory_;
 }
 
+Touch SurfacePair::touch(const Row<double>* memory) const {
+  Touch touch = touch_of(contact_.label, memory);
+  touch.passed = static_cast<int>(memory[ContactMemory::own][passed_node]) - 1;
+  return touch;
+}
+
 template <class Use>
 void SurfacePair::for_each_touch(NodalRows u, Row<double>* rows, const Use& use) const {
   ContactMemory memory(rows);
-  double& way = memory.others[0][0];  // m, the sum of the largest ways of nodes
+  double& way = memory.others[0][way_so_far];
   double most = 0.0;
   for (std::size_t s = 0; s < surfaces_.size(); ++s)
     most = std::max(most, surfaces_[s].move(u, memory.others + rows_of_[s]));
@@ -75,8 +92,11 @@ void SurfacePair::for_each_touch(NodalRows u, Row<double>* rows, const Use& use)
       // Both surfaces may move by half the distance before they touch.
       of_point[0][clear_until] = foot.behind ? way : way + 0.5 * foot.distance();
       if (foot.behind) {
+        of_point[0][last_depth] = foot.distance();
         use(side, k, x, foot, of_point);
       } else if (of_point[0][stiffness_now] > 0.0) {
+        constexpr double deep = 0.8;  // of the reach: no step leads from there to the outside
+        if (of_point[0][last_depth] > deep * reach_) memory.others[0][passed_node] = 1 + node_of(from, point);
         let_go(of_point, memory);
       }
     }
@@ -182,9 +202,7 @@ std::optional<SurfacePair::Deepest> SurfacePair::deepest_at_start() const {
                    const double depth = foot.distance();
                    if (deepest && depth <= deepest->depth) return;
                    const MovingSurface& from = surfaces_[side.from];
-                   const SurfacePoint& point = from.points()[k];
-                   const auto I = std::ranges::max_element(point.weights.x) - point.weights.x.begin();
-                   deepest = {from.nodes()[at(point.nodes[at(static_cast<int>(I))])], depth};
+                   deepest = {node_of(from, from.points()[k]), depth};
                  });
   return deepest;
 }

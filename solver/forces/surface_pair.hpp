@@ -33,7 +33,7 @@ class SurfacePair final : public ContactForce {
   std::size_t memory() const override;
   void add_contact(Factors factors, NodalRows u, Row<double>* rows,
                    AtNodes<Row<double>> forces) const override;
-  Touch touch(const Row<double>* memory) const override { return touch_of(contact_.label, memory); }
+  Touch touch(const Row<double>* memory) const override;
   double half_thickness() const override { return reach_; }
   double travel() const override { return 0.0; }
 

@@ -65,6 +65,9 @@ Touch Body<Real>::touch() const {
     sum.stored += touch.stored;
     sum.dissipated += touch.dissipated;
     sum.contrary += touch.contrary;
+    if (touch.passed < 0) return;
+    sum.name = touch.name;
+    sum.passed = touch.passed;
   });
   return sum;
 }
