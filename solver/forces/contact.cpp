@@ -35,8 +35,9 @@ void Contact::resolve(ForceResolver& resolver) const {
     }
   }
   const ContactScale scale(resolver, all);
-  auto pair = std::make_shared<SurfacePair>(*this, scale.stiffness(penalty), scale.edge, resolver.points,
-                                            resolver.cells, std::move(surfaces));
+  const auto make = method == Method::penalty ? make_penalty_pair : make_kinematic_pair;
+  auto pair = make(*this, {std::move(surfaces), scale.stiffness(penalty), scale.edge}, resolver.points,
+                   resolver.cells);
   if (const auto deepest = pair->deepest_at_start(); deepest && deepest->depth > scale.rounding()) {
     refuse_at(deepest->node,
               fmt::format("is {:.3g} m inside of what it may touch at the start", deepest->depth),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "forces/force_resolver.hpp"
@@ -14,11 +15,18 @@ struct Contact {
   static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = false;
 
+  /// Kinematic: in every step, nodes are moved apart. Penalty: a force in proportion to the depth.
+  enum class Method { kinematic, penalty };
+  friend constexpr std::array<std::string_view, 2> words_of(Method /*type*/) {
+    return {"kinematic", "penalty"};
+  }
+
   std::string label;
   std::string set;
   std::string other;      ///< empty: the surface touches itself
   double friction = 0.0;  ///< Coulomb's coefficient
   double penalty = 1.0;   ///< see parameters
+  Method method = Method::kinematic;
 
   static constexpr auto parameters() {
     using C = Contact;
@@ -32,6 +40,10 @@ struct Contact {
         Parameter{&C::penalty, "penalty", "-", Range::positive(),
                   "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of "
                   "the elements at both surfaces",
+                  false},
+        Parameter{&C::method, "method", "-", Range::any(),
+                  "kinematic moves nodes apart in steps as long as without contact; penalty pushes them, in "
+                  "shorter steps, and loses no energy",
                   false}};
   }
   std::optional<BrokenRule> broken_rule() const;

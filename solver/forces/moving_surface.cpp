@@ -103,21 +103,6 @@ MovingSurface::MovingSurface(const NodalField& points, const std::vector<Quadril
   }
 }
 
-double MovingSurface::move(NodalRows u, Row<double>* rows) const {
-  double most = 0.0;
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const Row<double>& of_node = u[nodes_[n]];
-    double square = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double x = undeformed_[n][i] + of_node[i], way = x - rows[n][i];
-      rows[n][i] = x;
-      square += way * way;
-    }
-    most = std::max(most, square);
-  }
-  return std::sqrt(most);
-}
-
 void MovingSurface::fit(Row<double>* rows) const {
   Row<double>* normals = rows + nodes_.size();
   std::fill(normals, normals + nodes_.size(), Row<double>{});
@@ -196,6 +181,14 @@ Row<double> MovingSurface::weights_at(const SurfaceFoot& foot, const Vector& x,
                                       const Row<double>* rows) const {
   const auto triangle = triangle_of(corners_now(foot.face, rows), foot.triangle);
   return of_corners(plane_weights(triangle, x), foot.triangle);
+}
+
+Row<double> MovingSurface::weights_along(const std::array<Vector, 4>& corners, std::size_t triangle,
+                                         const Vector& x, const Vector& direction) {
+  const auto X = triangle_of(corners, triangle);
+  const Vector normal = cross(difference(X[1], X[0]), difference(X[2], X[0]));
+  const double way = dot(difference(X[0], x), normal) / dot(direction, normal);
+  return of_corners(plane_weights(X, sum(x, way, direction)), triangle);
 }
 
 std::vector<std::vector<int>> faces_around(const MovingSurface& surface,

@@ -42,7 +42,21 @@ class MovingSurface {
   std::size_t rows() const { return 2 * nodes_.size() + tree_.rows(); }
 
   /// Moves it to displacements u (m). Returns the largest distance (m) by which a node moved.
-  double move(NodalRows u, Row<double>* rows) const;
+  template <class Displacements>
+  double move(const Displacements& u, Row<double>* rows) const {
+    double most = 0.0;
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      const Row<double>& of_node = u[nodes_[n]];
+      double square = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double x = undeformed_[n][i] + of_node[i], way = x - rows[n][i];
+        rows[n][i] = x;
+        square += way * way;
+      }
+      most = std::max(most, square);
+    }
+    return std::sqrt(most);
+  }
 
   /// Fits normals and the tree to the present position, as `closest` needs them.
   void fit(Row<double>* rows) const;
@@ -71,6 +85,11 @@ class MovingSurface {
   /// The weights of the corners of a face at the projection of x (m) onto the plane of one of its triangles,
   /// also beyond the triangle.
   Row<double> weights_at(const SurfaceFoot& foot, const Vector& x, const Row<double>* rows) const;
+
+  /// The same at the projection of x (m) along a direction onto the plane of a triangle of a face with these
+  /// corners (m).
+  static Row<double> weights_along(const std::array<Vector, 4>& corners, std::size_t triangle,
+                                   const Vector& x, const Vector& direction);
 
  private:
   static Vector mean(const Quadrilateral& nodes, const Row<double>& weights, const Row<double>* rows) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "forces/contact.hpp"
 #include "forces/contact_force.hpp"
@@ -8,19 +9,18 @@
 
 namespace sandglass {
 
-/// Points of a surface against faces of the other, and the other way round, or of a surface against its own
-/// faces. A point behind a face that opposes it, not deeper than `reach`, is pulled by a spring to the
-/// closest point of the face; with friction to a point that slips along the face and stays within the
-/// coefficient of friction times the depth of it. The spring pulls both material points along the line
-/// between them, so that momentum and its moment are kept. Points far from all faces are searched again only
-/// when nodes have moved far enough to touch.
-class SurfacePair final : public ContactForce {
- public:
-  /// `stiffness` is the pressure over the depth, Pa/m; half of it acts on each side. `reach` in m. One
-  /// surface touches itself.
-  SurfacePair(const Contact& contact, double stiffness, double reach, const NodalField& points,
-              std::span<const Hexahedron> cells, std::vector<std::vector<Quadrilateral>> surfaces);
+/// What a pair of surfaces acts with: one surface touches itself.
+struct SurfacesOfPair {
+  std::vector<std::vector<Quadrilateral>> faces;  ///< of one or two surfaces
+  double stiffness;                               ///< of a penalty: pressure over depth, Pa/m
+  double reach;                                   ///< the largest depth that is followed, m
+};
 
+/// Points of a surface against faces of the other, and the other way round, or of a surface against its own
+/// faces: what all methods share. A point touches if it is behind a face that opposes it, not deeper than the
+/// reach. Points far from all faces are searched again only when nodes have moved far enough to touch.
+class SurfacePair : public ContactForce {
+ public:
   /// A node, or one next to a point, and its depth, m.
   struct Deepest {
     int node;
@@ -30,27 +30,27 @@ class SurfacePair final : public ContactForce {
   /// The deepest point of the undeformed body; none if there is no contact.
   std::optional<Deepest> deepest_at_start() const;
 
-  std::size_t memory() const override;
-  void add_contact(Factors factors, NodalRows u, Row<double>* rows,
-                   AtNodes<Row<double>> forces) const override;
-  Touch touch(const Row<double>* memory) const override;
-  double half_thickness() const override { return reach_; }
-  double travel() const override { return 0.0; }
-
-  /// A spring between material points has at most twice the stiffness on each node that it has at its points.
-  /// Points of the other side pull a node with the stiffness of its area and, where they are few, of a face.
-  void add_rates(Factors largest, const std::vector<double>& masses,
-                 std::vector<LoadRates>& rates) const override;
-
-  std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override;
+  std::size_t memory() const final { return memory_; }
+  Touch touch(const Row<double>* memory) const final;
+  double half_thickness() const final { return given_.reach; }
+  double travel() const final { return 0.0; }
+  std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final;
 
   // There is no static search.
   void add_contact_potential(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
-                             double& /*sum*/) const override {}
+                             double& /*sum*/) const final {}
   void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
-                             AtNodes<Row<float>> /*roots*/) const override {}
+                             AtNodes<Row<float>> /*roots*/) const final {}
 
- private:
+ protected:
+  /// What a pair remembers in its first row: the sum of the largest ways of nodes, m; one more than the
+  /// number of a node that passed through; whether it has taken a step.
+  enum OfPair : std::size_t { way_so_far = 0, passed_node = 1, has_moved = 2 };
+
+  /// What points remember in their first row: until which way they touch nothing, m; the face that they
+  /// touch; their strength, zero if they do not touch; their depth then, m.
+  enum OfPoint : std::size_t { clear_until = 0, touched_face = 1, strength = 2, last_depth = 3 };
+
   /// The points of one surface against the faces of another.
   struct Side {
     std::size_t from, onto;                    // surfaces
@@ -58,23 +58,96 @@ class SurfacePair final : public ContactForce {
     std::size_t first_row;                     // of its points
   };
 
-  std::size_t by_point() const { return contact_.friction > 0.0 ? 3 : 1; }
+  /// `by_point` and `by_node` are the numbers of rows that points and nodes remember.
+  SurfacePair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
+              std::span<const Hexahedron> cells, std::size_t by_point, std::size_t by_node);
 
-  /// Calls use(side, k, x, foot, of_point) for all points k that are behind a face, with their rows.
-  template <class Use>
-  void for_each_touch(NodalRows u, Row<double>* rows, const Use& use) const;
+  /// The same pair with other surfaces.
+  virtual std::shared_ptr<const BodyForce> on(SurfacesOfPair given, const NodalField& points,
+                                              std::span<const Hexahedron> cells) const = 0;
 
-  Row<double> hold(const Vector& x, const SurfaceFoot& foot, double stiffness, Row<double>* of_point,
-                   const Row<double>* onto, ContactMemory& memory, const MovingSurface& surface) const;
-  void let_go(Row<double>* of_point, ContactMemory& memory) const;
+  Row<double>* of_point(ContactMemory& memory, const Side& side, std::size_t k) const {
+    return memory.others + side.first_row + by_point_ * k;
+  }
 
-  Contact contact_;
-  double stiffness_, reach_;
-  std::vector<std::vector<Quadrilateral>> faces_;  // of each surface
+  /// The rows of a surface; then those of its nodes.
+  Row<double>* of_surface(ContactMemory& memory, std::size_t s) const { return memory.others + rows_of_[s]; }
+  Row<double>* of_nodes(ContactMemory& memory, std::size_t s) const {
+    return of_surface(memory, s) + surfaces_[s].rows();
+  }
+
+  /// Calls use(side, k, x, foot) for all points k at x (m) that touch at displacements u (m), and
+  /// let_go(of_point) for points that touched before and do not now.
+  template <class Displacements, class Use, class LetGo>
+  void for_each_touch(const Displacements& u, ContactMemory& memory, const Use& use,
+                      const LetGo& let_go) const;
+
+  const Contact contact_;
+  const SurfacesOfPair given_;
   std::vector<MovingSurface> surfaces_;
-  std::vector<std::size_t> rows_of_;  // the first of each surface
   std::vector<Side> sides_;
-  std::size_t memory_;
+
+ private:
+  /// A node with the largest weight.
+  static int node_of(const MovingSurface& surface, const SurfacePoint& point);
+
+  const std::size_t by_point_;
+  std::vector<std::size_t> rows_of_;  // the first of each surface
+  std::size_t memory_ = ContactMemory::own + 1;
 };
+
+template <class Displacements, class Use, class LetGo>
+void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, const Use& use,
+                                 const LetGo& let_go) const {
+  Row<double>& of_pair = memory.others[0];
+  double& way = of_pair[way_so_far];
+  double most = 0.0;
+  for (std::size_t s = 0; s < surfaces_.size(); ++s)
+    most = std::max(most, surfaces_[s].move(u, of_surface(memory, s)));
+  way += most;
+  bool fits = false;
+  for (const Side& side : sides_) {
+    const MovingSurface &from = surfaces_[side.from], &onto = surfaces_[side.onto];
+    Row<double>*of_from = of_surface(memory, side.from), *of_onto = of_surface(memory, side.onto);
+    for (std::size_t k = 0; k < from.points().size(); ++k) {
+      Row<double>& one = of_point(memory, side, k)[0];
+      if (one[clear_until] > way) continue;
+      if (!fits) {
+        for (std::size_t s = 0; s < surfaces_.size(); ++s) surfaces_[s].fit(of_surface(memory, s));
+        fits = true;
+      }
+      const SurfacePoint& point = from.points()[k];
+      const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
+      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), given_.reach,
+                                            side.neighbours[k], of_onto);
+      // Both surfaces may move by half the distance before they touch.
+      one[clear_until] = foot.behind ? way : way + 0.5 * foot.distance();
+      if (foot.behind) {
+        use(side, k, x, foot);
+        one[touched_face] = foot.face;
+        one[last_depth] = foot.distance();
+      } else if (one[strength] > 0.0) {
+        constexpr double deep = 0.8;  // of the reach: no step leads from there to the outside
+        if (one[last_depth] > deep * given_.reach) of_pair[passed_node] = 1 + node_of(from, point);
+        let_go(&one);
+        one[strength] = 0.0;
+      }
+    }
+  }
+}
+
+/// By a penalty: a spring pulls a point that touches to the closest point of the face; with friction to a
+/// point that slips along the face and stays within the coefficient of friction times the depth of it. The
+/// spring pulls both material points along the line between them, so that momentum and its moment are kept.
+/// Half of the stiffness acts on each side. Springs of points are not stiffer than those of the faces they
+/// touch.
+std::shared_ptr<SurfacePair> make_penalty_pair(const Contact& contact, SurfacesOfPair given,
+                                               const NodalField& points, std::span<const Hexahedron> cells);
+
+/// By moving nodes: within a step, points that touch are moved back to the closest point of the face, and the
+/// face to them, by impulses along the line between them, the smallest that separate all points. Friction
+/// takes from their relative motion along the face at most the coefficient of friction times the impulse.
+std::shared_ptr<SurfacePair> make_kinematic_pair(const Contact& contact, SurfacesOfPair given,
+                                                 const NodalField& points, std::span<const Hexahedron> cells);
 
 }  // namespace sandglass
