@@ -42,7 +42,7 @@ ObstacleShape shape_of(const Obstacle& given, const std::filesystem::path& file)
 }  // namespace
 
 std::optional<BrokenRule> Obstacle::broken_rule() const {
-  if (const auto broken = broken_rule_of_name(label)) return broken;
+  if (auto broken = broken_rule_of_name(label)) return broken;
   const std::string_view word = words_of(shape)[static_cast<std::size_t>(shape)];
   const bool is_plane = shape == Shape::plane, is_file = shape == Shape::surface;
   const bool has_sizes = shape == Shape::box || shape == Shape::ellipsoid;

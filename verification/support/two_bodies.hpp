@@ -50,4 +50,12 @@ inline Mesh moved(Mesh mesh, const Vector& by) {
   return mesh;
 }
 
+inline constexpr std::array both_methods{Contact::Method::penalty, Contact::Method::kinematic};
+
+/// The contact of the two bodies.
+inline Contact pair_of(const std::string& set, const std::string& other, Contact::Method method,
+                       double friction = 0.0) {
+  return {.label = "pair", .set = set, .other = other, .friction = friction, .method = method};
+}
+
 }  // namespace sandglass::verification
