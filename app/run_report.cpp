@@ -226,7 +226,7 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
   fmt::print("\n");
   if (!contacts_of(scene.forces).empty()) {
     const double depth = history.largest_depth(quasi_static);
-    fmt::print("largest depth in an obstacle {}, {:.2g} % of the shortest edge\n", length_text(depth),
+    fmt::print("largest depth of contact {}, {:.2g} % of the shortest edge\n", length_text(depth),
                100.0 * depth / shortest_edge(scene.mesh));
   }
   for (const auto& [set, force] : row.reactions) fmt::print("reaction at {} {}\n", set, force_text(force));

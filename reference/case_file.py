@@ -187,6 +187,8 @@ def read_case(path, name=None):
     displacements = read_all("displacement", _displacement)
     rotations, supports = read_all("rotation", _rotation), read_all("support", _support)
     obstacles = read_all("obstacle", _obstacle, moving)
+    if "contact" in tables:
+        raise InputError(f"{path}: [[contact]] is not supported here; allowed: [[obstacle]]")
     if not (displacements or rotations or supports or obstacles or moving):
         tables = "[[displacement]], [[rotation]], [[support]] or [[obstacle]]"
         raise InputError(f"{path}: has no {tables}; at least one table is required")

@@ -277,7 +277,7 @@ levels = 4
     with h5py.File(output) as file:
         depths = file["history/depth"][:]
     assert depths.max() > 1.1 * depths[-1] > 0.0
-    number, prefix = re.search(r"largest depth in an obstacle (\S+) (u?m*m)", text).groups()
+    number, prefix = re.search(r"largest depth of contact (\S+) (u?m*m)", text).groups()
     scale = {"m": 1.0, "mm": 1e-3, "um": 1e-6}[prefix]
     assert scale * float(number) == pytest.approx(depths[-1], rel=5e-3)  # three digits
 

@@ -257,6 +257,7 @@ half_sizes = [3, 2, 1]
         ("penalty", "friction", "friction"),
         ("inside", "outside", "unknown key"),
         ('name = "press"', 'name = "press", answer = "dynamic"', "motion"),
+        ("[[obstacle]]", "[[contact]]", r"\[\[contact\]\] is not supported here"),
     ):
         path.write_text(text.replace(wrong, message))
         with pytest.raises(InputError, match=error):

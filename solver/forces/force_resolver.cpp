@@ -9,18 +9,20 @@
 
 namespace sandglass {
 
-const std::vector<int>& ForceResolver::nodes(std::string_view table, const std::string& set) const {
-  return named_node_set(sets, file, fmt::format("{}.set", table), set);
+const std::vector<int>& ForceResolver::nodes(std::string_view table, const std::string& set,
+                                             std::string_view key) const {
+  return named_node_set(sets, file, fmt::format("{}.{}", table, key), set);
 }
 
-std::vector<Quadrilateral> ForceResolver::faces(std::string_view table, const std::string& set) const {
-  const std::vector<int>& all = nodes(table, set);
+std::vector<Quadrilateral> ForceResolver::faces(std::string_view table, const std::string& set,
+                                                std::string_view key) const {
+  const std::vector<int>& all = nodes(table, set, key);
   auto within = faces_within(boundary, all);
   if (within.empty()) {
     throw InputError(fmt::format(
-        "{}: {}.set = '{}' has no boundary face among its {} nodes; a {} acts on faces of the boundary "
+        "{}: {}.{} = '{}' has no boundary face among its {} nodes; a {} acts on faces of the boundary "
         "whose four nodes all lie in its set",
-        file, table, set, all.size(), table));
+        file, table, key, set, all.size(), table));
   }
   return within;
 }

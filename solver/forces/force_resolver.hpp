@@ -24,11 +24,14 @@ struct ForceResolver {
   std::span<const Hexahedron> cells = {};
   std::vector<double> young_moduli = {};  ///< of elements, of the undeformed material, Pa
 
-  /// The nodes of the set that a table names. Throws InputError if there is no such set or it is empty.
-  const std::vector<int>& nodes(std::string_view table, const std::string& set) const;
+  /// The nodes of the set that a table names with a key. Throws InputError if there is no such set or it is
+  /// empty.
+  const std::vector<int>& nodes(std::string_view table, const std::string& set,
+                                std::string_view key = "set") const;
 
   /// The boundary faces within that set. Throws InputError as well if there are none.
-  std::vector<Quadrilateral> faces(std::string_view table, const std::string& set) const;
+  std::vector<Quadrilateral> faces(std::string_view table, const std::string& set,
+                                   std::string_view key = "set") const;
 
   /// The number of a curve, which is added if it is new.
   std::size_t number_of(const LoadCurve& curve);

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "base/type_list.hpp"
+#include "forces/contact.hpp"
 #include "forces/dead_force.hpp"
 #include "forces/gravity.hpp"
 #include "forces/obstacle.hpp"
@@ -20,7 +21,7 @@ namespace sandglass {
 /// the density; and resolve(resolver), which adds its BodyForce on a mesh. The optional `one_of` names
 /// parameters of which at least one must be given, the optional `numerical` those that change how accurately
 /// an answer is computed, but not the exact answer. All loads are proportional to the factor of their curve.
-using Forces = TypeList<PointMass, DeadForce, Pressure, Gravity, Support, Obstacle>;
+using Forces = TypeList<PointMass, DeadForce, Pressure, Gravity, Support, Obstacle, Contact>;
 
 /// The forces of a case: its tables of each kind, in their order.
 template <class List>

@@ -19,14 +19,14 @@ class KinematicContact final : public ObstacleContact {
   /// so its work is the product with the mean of their motions; what it takes from the body at rest on the
   /// obstacle is lost.
   void push_out(Factors factors, const NodalPush& nodes) const override {
-    Memory memory(nodes.memory);
+    ContactMemory memory(nodes.memory);
     const Vector moved = displacement(factors);
-    Row<double>&position = memory.of_nodes[0], &last_of_obstacle = memory.of_nodes[1];
+    Row<double>&position = memory.others[0], &last_of_obstacle = memory.others[1];
     const Vector of_obstacle = difference(moved, {position[0], position[1], position[2]});
     memory.pushes = {};
     for_each_gap(moved, nodes.u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
       const int node = nodes_[k].node;
-      Row<double>&last = memory.of_nodes[own + k], &increment = nodes.increment[node];
+      Row<double>&last = memory.others[own + k], &increment = nodes.increment[node];
       Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
       if (position[3] == 0.0)  // the force of the first step acts for half of it
         last = {{0.5 * motion[0], 0.5 * motion[1], 0.5 * motion[2], 0.0}};
@@ -59,7 +59,7 @@ class KinematicContact final : public ObstacleContact {
                  std::vector<LoadRates>& /*rates*/) const override {}
   void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
                              AtNodes<Row<float>> /*roots*/) const override {}
-  std::size_t memory() const override { return Memory::own + own + nodes_.size(); }
+  std::size_t memory() const override { return ContactMemory::own + own + nodes_.size(); }
 
   std::shared_ptr<const BodyForce> at_rest() const override {
     return make_penalty_contact(nodes_, obstacle_, shape_, curve_, start_);
@@ -67,7 +67,7 @@ class KinematicContact final : public ObstacleContact {
 
   void begin_again(const Vector& force, Row<double>* rows) const override {
     ContactForce::begin_again(force, rows);
-    Memory(rows).of_nodes[0] = {};
+    ContactMemory(rows).others[0] = {};
   }
 
  private:

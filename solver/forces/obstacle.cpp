@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "forces/contact_scale.hpp"
 #include "forces/obstacle_contact.hpp"
-#include "mesh/edges.hpp"
 
 namespace sandglass {
 
@@ -39,29 +39,10 @@ ObstacleShape shape_of(const Obstacle& given, const std::filesystem::path& file)
   return {};
 }
 
-/// The stiffness per area over the penalty, E / h, and h, of the elements with a face among these nodes.
-struct Scale {
-  double modulus = INFINITY;  ///< Pa
-  double edge = INFINITY;     ///< m
-
-  Scale(const ForceResolver& resolver, const std::vector<Quadrilateral>& faces) {
-    std::vector<bool> touches(resolver.points.size(), false);
-    for (const int node : nodes_of(faces)) touches[at(node)] = true;
-    for (std::size_t e = 0; e < resolver.cells.size(); ++e) {
-      const Hexahedron& cell = resolver.cells[e];
-      if (std::ranges::count_if(cell, [&](int node) { return touches[at(node)]; }) < 4) continue;
-      modulus = std::min(modulus, resolver.young_moduli[e]);
-      for (const auto& [a, b] : hexahedron_edges)
-        edge = std::min(edge, distance(resolver.points[at(cell[a])], resolver.points[at(cell[b])]));
-    }
-  }
-};
-
 }  // namespace
 
 std::optional<BrokenRule> Obstacle::broken_rule() const {
-  if (label.empty() || label.find('/') != std::string::npos)
-    return BrokenRule{"name", fmt::format("= '{}' must be a word without '/'", label)};
+  if (auto broken = broken_rule_of_name(label)) return broken;
   const std::string_view word = words_of(shape)[static_cast<std::size_t>(shape)];
   const bool is_plane = shape == Shape::plane, is_file = shape == Shape::surface;
   const bool has_sizes = shape == Shape::box || shape == Shape::ellipsoid;
@@ -87,17 +68,9 @@ std::optional<BrokenRule> Obstacle::broken_rule() const {
 }
 
 void Obstacle::resolve(ForceResolver& resolver) const {
-  const auto refuse = [&](const std::string& why) {
-    throw InputError(fmt::format("{}: obstacle '{}': {}", resolver.file, label, why));
-  };
-  if (resolver.sets.contains(label))
-    refuse("a node set has the same name, and forces are reported by name; allowed: a name of its own");
-  for (const ContactForce* other : contacts_of(resolver.forces)) {
-    if (other->touch(std::vector<Row<double>>(other->memory()).data()).name == label)
-      refuse("another obstacle has the same name; allowed: a name of its own");
-  }
+  require_own_name(resolver, name, label);
   const auto faces = resolver.faces(name, set);
-  const Scale scale(resolver, faces);
+  const ContactScale scale(resolver, faces);
   std::map<int, double> areas;
   for (const Quadrilateral& face : faces) {
     for (const FacePoint& gauss : gauss_points_of(corners_of(resolver.points, face))) {
@@ -106,19 +79,19 @@ void Obstacle::resolve(ForceResolver& resolver) const {
   }
   std::vector<TouchingNode> touching;
   for (const auto& [node, area] : areas)
-    touching.push_back({node, resolver.points[at(node)], penalty * scale.modulus / scale.edge * area});
+    touching.push_back({node, resolver.points[at(node)], scale.stiffness(penalty) * area});
   const Vector start = sum({}, curve.at(0.0, 0.0), displacement);
   const auto make = method == Method::penalty ? make_penalty_contact : make_kinematic_contact;
   auto contact =
       make(std::move(touching), *this, shape_of(*this, resolver.file), resolver.number_of(curve), start);
   const auto depth_of = [&](const TouchingNode& one) { return contact->depth_at_start(one); };
   const TouchingNode deepest = *std::ranges::max_element(contact->touching(), {}, depth_of);
-  constexpr double rounding = 1e-6;  // of coordinates in files, over the edge
-  if (const double depth = depth_of(deepest); depth > rounding * scale.edge) {
-    refuse(fmt::format(
-        "node {} at ({:.6g}, {:.6g}, {:.6g}) m is {:.3g} m inside of it at the start; allowed: a body "
-        "that is {} of it",
-        deepest.node, deepest.X[0], deepest.X[1], deepest.X[2], depth, inside ? "within" : "outside"));
+  if (const double depth = depth_of(deepest); depth > scale.rounding()) {
+    throw InputError(fmt::format(
+        "{}: obstacle '{}': node {} at ({:.6g}, {:.6g}, {:.6g}) m is {:.3g} m inside of it at the start; "
+        "allowed: a body that is {} of it",
+        resolver.file, label, deepest.node, deepest.X[0], deepest.X[1], deepest.X[2], depth,
+        inside ? "within" : "outside"));
   }
   resolver.forces.push_back(std::move(contact));
 }

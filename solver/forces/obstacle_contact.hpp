@@ -38,17 +38,7 @@ class ObstacleContact : public ContactForce {
   }
   double travel() const final { return length(obstacle_.displacement); }
 
-  Touch touch(const Row<double>* memory) const final {
-    const Row<double>&pushes = memory[0], &moves = memory[1];
-    return {obstacle_.label,
-            {pushes[0], pushes[1], pushes[2]},
-            {moves[0], moves[1], moves[2]},
-            moves[3],
-            pushes[3],
-            memory[2][0],
-            memory[2][1],
-            static_cast<int>(memory[2][2])};
-  }
+  Touch touch(const Row<double>* memory) const final { return touch_of(obstacle_.label, memory); }
 
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final {
     std::vector<TouchingNode> inside;
@@ -60,18 +50,6 @@ class ObstacleContact : public ContactForce {
   }
 
  protected:
-  /// The rows that a contact keeps.
-  struct Memory {
-    Row<double>& pushes;  ///< force on the body, N; stored energy, J
-    Row<double>& moves;   ///< displacement of the obstacle, m; largest depth, m
-    Row<double>& sums;    ///< dissipated energy and work since the start, J; contrary nodes; whether fixed
-    Row<double>* of_nodes;
-
-    static constexpr std::size_t own = 3;
-    explicit Memory(Row<double>* rows)
-        : pushes(rows[0]), moves(rows[1]), sums(rows[2]), of_nodes(rows + own) {}
-  };
-
   /// The same contact of other nodes.
   virtual std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const = 0;
 

@@ -18,7 +18,7 @@ class PenaltyContact final : public ObstacleContact {
 
   void add_contact(Factors factors, NodalRows u, Row<double>* rows,
                    AtNodes<Row<double>> forces) const override {
-    Memory memory(rows);
+    ContactMemory memory(rows);
     const Vector moved = displacement(factors);
     memory.pushes = {};
     memory.moves = {{moved[0], moved[1], moved[2], 0.0}};
@@ -26,7 +26,7 @@ class PenaltyContact final : public ObstacleContact {
     const bool fixed = is_fixed(rows);
     for_each_gap(moved, u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const auto& [node, X, stiffness] = nodes_[k];
-      Row<double>* of_node = memory.of_nodes + by_node() * k;
+      Row<double>* of_node = memory.others + by_node() * k;
       const double constant = constant_depth(of_node);
       const bool inside = gap.distance < constant, touched = of_node[0][3] != 0.0;
       const bool touches = fixed ? touched : inside;
@@ -54,7 +54,7 @@ class PenaltyContact final : public ObstacleContact {
   void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,
                              double& sum) const override {
     for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
-      const double constant = constant_depth(memory + Memory::own + by_node() * k),
+      const double constant = constant_depth(memory + ContactMemory::own + by_node() * k),
                    depth = std::max(constant - gap.distance, 0.0);
       sum += 0.5 * nodes_[k].stiffness * (depth * depth - constant * constant);
     });
@@ -64,30 +64,28 @@ class PenaltyContact final : public ObstacleContact {
     if (sticks()) return false;
     bool any = false;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      Row<double>& of_node = Memory(memory).of_nodes[k];
+      Row<double>& of_node = ContactMemory(memory).others[k];
       of_node[2] = augmented && of_node[3] != 0.0 ? std::max(of_node[1] + of_node[2], 0.0) : 0.0;
       any = any || of_node[2] > 0.0;
     }
     return any;
   }
 
-  /// Curved obstacles have no larger stiffness in any direction, nor do springs along them. A spring that
-  /// only pushes returns a node with more than its energy if the step ends its contact too late: with steps
-  /// of 1.8 over its frequency, twice in the mean, of 0.9, 1.015 times, of 0.6, 1.001 times.
+  /// Curved obstacles have no larger stiffness in any direction, nor do springs along them.
   void add_rates(Factors /*largest*/, const std::vector<double>& masses,
                  std::vector<LoadRates>& rates) const override {
     for (const auto& [node, X, stiffness] : nodes_)
-      rates[at(node)].square += 9.0 * stiffness / masses[at(node)];
+      rates[at(node)].square += rate_of_one_sided * stiffness / masses[at(node)];
   }
 
   void fix_contact(bool fixed, Row<double>* memory) const override {
-    Memory(memory).sums[3] = fixed ? 1.0 : 0.0;
+    ContactMemory(memory).sums[3] = fixed ? 1.0 : 0.0;
   }
 
   bool correct_contact(Row<double>* memory) const override {
-    Row<double>* of_nodes = Memory(memory).of_nodes;
+    Row<double>* others = ContactMemory(memory).others;
     for (std::size_t k = nodes_.size(); k-- > 0;) {
-      Row<double>& of_node = of_nodes[by_node() * k];
+      Row<double>& of_node = others[by_node() * k];
       if (of_node[0] == 0.0) continue;
       of_node = {{0.0, of_node[1], of_node[2], 1.0 - of_node[3]}};
       return true;
@@ -121,7 +119,7 @@ class PenaltyContact final : public ObstacleContact {
     });
   }
 
-  std::size_t memory() const override { return Memory::own + by_node() * nodes_.size(); }
+  std::size_t memory() const override { return ContactMemory::own + by_node() * nodes_.size(); }
 
   /// Holds nodes that touch it at the start: a load may pull them away, but then no equilibrium is found.
   void add_holds(std::vector<Hold>& holds) const override {
@@ -140,7 +138,7 @@ class PenaltyContact final : public ObstacleContact {
 
   /// Whether a node is linearized as touching: unless it is fixed, also where body and obstacle just fit.
   bool touches(std::size_t k, const Gap& gap, const Row<double>* memory) const {
-    const Row<double>* of_node = memory + Memory::own + by_node() * k;
+    const Row<double>* of_node = memory + ContactMemory::own + by_node() * k;
     return is_fixed(memory) ? of_node[0][3] != 0.0 : gap.distance <= constant_depth(of_node) + rounding_;
   }
 
@@ -153,9 +151,9 @@ class PenaltyContact final : public ObstacleContact {
     return make_penalty_contact(std::move(nodes), obstacle_, shape_, curve_, start_);
   }
 
-  /// The extension (m) along the surface of the spring that holds a node. Work is the mean of two forces
-  /// times the slip, as in the time loop.
-  Vector hold(const Vector& x, const Gap& gap, double stiffness, Row<double>* of_node, Memory& memory) const {
+  /// The extension (m) along the surface of the spring that holds a node.
+  Vector hold(const Vector& x, const Gap& gap, double stiffness, Row<double>* of_node,
+              ContactMemory& memory) const {
     Row<double>&anchor = of_node[0], &stretch = of_node[1];
     if (anchor[3] == 0.0) {
       anchor = {{x[0], x[1], x[2], 1.0}};
@@ -163,13 +161,7 @@ class PenaltyContact final : public ObstacleContact {
     }
     const Vector from = difference(x, {anchor[0], anchor[1], anchor[2]});
     Vector along = sum(from, -dot(from, gap.normal), gap.normal);
-    const double size = std::sqrt(dot(along, along)), most = obstacle_.friction * -gap.distance;
-    if (size > most) {
-      const Vector held = sum({}, most / size, along), slip = difference(along, held);
-      for (std::size_t i = 0; i < 3; ++i)
-        memory.sums[0] += 0.5 * stiffness * (stretch[i] + held[i]) * slip[i];
-      along = held;
-    }
+    memory.sums[0] += stiffness * slip(along, obstacle_.friction * -gap.distance, stretch);
     // At the depth of the node: where a normal turns, at an edge, the spring is not stretched.
     const Vector now = difference(x, along);
     anchor = {{now[0], now[1], now[2], 1.0}};
@@ -178,7 +170,7 @@ class PenaltyContact final : public ObstacleContact {
     return along;
   }
 
-  void let_go(double stiffness, Row<double>* of_node, Memory& memory) const {
+  void let_go(double stiffness, Row<double>* of_node, ContactMemory& memory) const {
     of_node[0][3] = 0.0;
     if (!sticks()) return;
     Row<double>& stretch = of_node[1];

@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <sstream>
 
 #include "base/error.hpp"
+#include "forces/triangle_foot.hpp"
 
 namespace sandglass {
 
@@ -20,50 +21,14 @@ std::string text_of(const Vector& x) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
 }
 
-/// The weights of the corners at the point of a triangle that is closest to x, and the feature on which it
-/// is: 0 the face, 1 to 3 the edges that start at corners 0 to 2, 4 to 6 the corners.
-struct Foot {
-  Vector weights;
-  std::size_t feature;
-};
-
-Foot foot_on(const std::array<Vector, 3>& X, const Vector& x) {
-  const Vector ab = difference(X[1], X[0]), ac = difference(X[2], X[0]), normal = cross(ab, ac);
-  const double area = dot(normal, normal);
-  Vector inside{};  // barycentric coordinates
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector &p = X[(i + 1) % 3], &q = X[(i + 2) % 3];
-    inside[i] = dot(cross(difference(q, p), difference(x, p)), normal) / area;
-  }
-  if (inside[0] > 0.0 && inside[1] > 0.0 && inside[2] > 0.0) return {inside, 0};
-  Foot nearest{{}, 0};
-  double least = INFINITY;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    const Vector edge = difference(X[j], X[i]);
-    const double t = std::clamp(dot(difference(x, X[i]), edge) / dot(edge, edge), 0.0, 1.0);
-    const Vector from = difference(x, sum(X[i], t, edge));
-    const double square = dot(from, from);
-    if (square >= least) continue;
-    least = square;
-    nearest = {{}, t == 0.0 ? 4 + i : t == 1.0 ? 4 + j : 1 + i};
-    nearest.weights[i] = 1.0 - t;
-    nearest.weights[j] = t;
-  }
-  return nearest;
-}
-
-/// The square of the distance of a point from a box, m^2.
-double square_from(const Vector& x, const Vector& low, const Vector& high) {
-  double square = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double beyond = std::max({low[i] - x[i], x[i] - high[i], 0.0});
-    square += beyond * beyond;
-  }
-  return square;
-}
-
 constexpr int most_in_leaf = 4;
+
+/// The mean of the corners of each triangle, m.
+NodalField centres_of(const NodalField& points, const std::vector<Triangle>& triangles) {
+  NodalField centres;
+  for (const Triangle& corners : triangles) centres.push_back(mean_at(corners, points));
+  return centres;
+}
 
 /// Points and triangles as they are read; equal points are one.
 struct Soup {
@@ -139,10 +104,15 @@ Soup read_obj(std::istream& text) {
 }  // namespace
 
 TriangleSurface::TriangleSurface(NodalField points, std::vector<Triangle> triangles, const std::string& file)
-    : points_(std::move(points)), triangles_(std::move(triangles)) {
+    : points_(std::move(points)),
+      triangles_(std::move(triangles)),
+      tree_(centres_of(points_, triangles_), most_in_leaf),
+      boxes_(tree_.rows()) {
   if (triangles_.empty()) throw InputError(fmt::format("{}: no triangle; allowed: a closed surface", file));
   orient(file);
-  build(0, static_cast<int>(triangles_.size()));
+  tree_.fit(boxes_.data(), [&](int t, const auto& grow) {
+    for (const int corner : triangles_[sandglass::at(t)]) grow(point(corner));
+  });
   set_normals(file);
 }
 
@@ -166,36 +136,6 @@ void TriangleSurface::orient(const std::string& file) {
     throw InputError(fmt::format("{}: the surface encloses no volume; allowed: a closed surface", file));
   if (volume > 0.0) return;
   for (Triangle& corners : triangles_) std::swap(corners[1], corners[2]);
-}
-
-/// The number of the node, above all triangles from `first` on, `count` of them, which are sorted.
-int TriangleSurface::build(int first, int count) {
-  Node node{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, first, count};
-  const auto begin = triangles_.begin() + first;
-  for (auto corners = begin; corners != begin + count; ++corners) {
-    for (const int corner : *corners) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        node.low[i] = std::min(node.low[i], point(corner)[i]);
-        node.high[i] = std::max(node.high[i], point(corner)[i]);
-      }
-    }
-  }
-  const auto number = static_cast<int>(nodes_.size());
-  nodes_.push_back(node);
-  if (count <= most_in_leaf) return number;
-  const Vector extent = difference(node.high, node.low);
-  const auto axis = static_cast<std::size_t>(std::ranges::max_element(extent) - extent.begin());
-  const auto place = [&](const Triangle& corners) {
-    double twice = 0.0;
-    for (const int corner : corners) twice += point(corner)[axis];
-    return twice;
-  };
-  std::nth_element(begin, begin + count / 2, begin + count,
-                   [&](const Triangle& a, const Triangle& b) { return place(a) < place(b); });
-  build(first, count / 2);  // the next number
-  nodes_[sandglass::at(number)].first = build(first + count / 2, count - count / 2);
-  nodes_[sandglass::at(number)].count = 0;
-  return number;
 }
 
 void TriangleSurface::set_normals(const std::string& file) {
@@ -242,37 +182,20 @@ void TriangleSurface::set_normals(const std::string& file) {
 void TriangleSurface::compare(const Vector& x, std::size_t triangle, Closest& closest) const {
   std::array<Vector, 3> X;
   for (std::size_t I = 0; I < 3; ++I) X[I] = point(triangles_[triangle][I]);
-  const Foot foot = foot_on(X, x);
-  const Vector point = sum(sum(sum({}, foot.weights[0], X[0]), foot.weights[1], X[1]), foot.weights[2], X[2]);
-  const Vector from = difference(x, point);
+  const TriangleFoot foot = TriangleFoot::of(X, x);
+  const Vector point = point_of(X, foot.weights), from = difference(x, point);
   const double square = dot(from, from);
   if (square < closest.square) closest = {square, point, normals_[triangle][foot.feature]};
 }
 
 double TriangleSurface::half_thickness() const {
-  return 0.5 * std::ranges::min(difference(nodes_.front().high, nodes_.front().low));
+  const Row<double>&low = boxes_[0], &high = boxes_[1];
+  return 0.5 * std::min({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
 }
 
 Gap TriangleSurface::at(const Vector& x) const {
   Closest closest{INFINITY, {}, {}};
-  constexpr std::size_t deepest = 64;  // nodes halve the triangles
-  std::array<int, deepest> waiting{};
-  std::size_t count = 1;
-  const auto square = [&](int number) {
-    const Node& node = nodes_[sandglass::at(number)];
-    return square_from(x, node.low, node.high);
-  };
-  while (count > 0) {
-    const int number = waiting[--count];
-    if (square(number) >= closest.square) continue;
-    const Node& node = nodes_[sandglass::at(number)];
-    for (int t = node.first; t < node.first + node.count; ++t) compare(x, sandglass::at(t), closest);
-    if (node.count > 0) continue;
-    const int near = number + 1, far = node.first;
-    const bool swaps = square(far) < square(near);
-    waiting[count++] = swaps ? near : far;
-    waiting[count++] = swaps ? far : near;
-  }
+  tree_.search(x, boxes_.data(), closest.square, [&](int t) { compare(x, sandglass::at(t), closest); });
   const Vector from = difference(x, closest.point);
   const double r = std::sqrt(closest.square), side = dot(from, closest.normal) < 0.0 ? -1.0 : 1.0;
   if (r == 0.0) return {0.0, direction_of(closest.normal, length(closest.normal))};

@@ -4,6 +4,7 @@
 #include <memory>
 #include <variant>
 
+#include "forces/box_tree.hpp"
 #include "forces/obstacle_shape.hpp"
 
 namespace sandglass {
@@ -26,10 +27,6 @@ class TriangleSurface {
   Gap at(const Vector& x) const;
 
  private:
-  struct Node {
-    Vector low, high;  // m
-    int first, count;  // of the triangles; count 0: of the two nodes below
-  };
   struct Closest {
     double square;  // of the distance, m^2
     Vector point;
@@ -37,7 +34,6 @@ class TriangleSurface {
   };
 
   const Vector& point(int n) const { return points_[static_cast<std::size_t>(n)]; }
-  int build(int first, int count);
   void orient(const std::string& file);
   void set_normals(const std::string& file);
   void compare(const Vector& x, std::size_t triangle, Closest& closest) const;
@@ -45,7 +41,8 @@ class TriangleSurface {
   NodalField points_;
   std::vector<Triangle> triangles_;
   std::vector<std::array<Vector, 7>> normals_;  // of each face, its edges (from corners 0, 1, 2) and corners
-  std::vector<Node> nodes_;
+  BoxTree tree_;
+  Rows<double> boxes_;
 };
 
 /// Reads a surface, in m: .stl, text or binary, or .obj. Throws InputError for another file, or a damaged

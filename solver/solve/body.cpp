@@ -15,12 +15,13 @@ namespace {
 void require_divisible(const Model& model) {
   if (model.choice().ranks->count() == 1) return;
   const auto& dynamics = model.scene().settings.dynamics;
-  const char* what = !model.scene().ties.empty()                  ? "ties and hanging nodes are"
-                     : dynamics.subcycles > 1                     ? "dynamics.subcycles > 1 is"
-                     : dynamics.body_frequency != 0               ? "dynamics.body_frequency = 1 is"
-                     : !contacts_of(model.scene().forces).empty() ? "[[obstacle]] is"
-                                                                  : nullptr;
-  if (what == nullptr) return;
+  const auto contacts = contacts_of(model.scene().forces);
+  const std::string what = !model.scene().ties.empty()    ? "ties and hanging nodes are"
+                           : dynamics.subcycles > 1       ? "dynamics.subcycles > 1 is"
+                           : dynamics.body_frequency != 0 ? "dynamics.body_frequency = 1 is"
+                           : !contacts.empty() ? fmt::format("[[{}]] is", contacts.front()->traits().name)
+                                               : "";
+  if (what.empty()) return;
   throw InputError(fmt::format("{}: {} not divided among ranks; allowed: one rank with more threads",
                                model.scene().settings.file.string(), what));
 }
@@ -64,6 +65,9 @@ Touch Body<Real>::touch() const {
     sum.stored += touch.stored;
     sum.dissipated += touch.dissipated;
     sum.contrary += touch.contrary;
+    if (touch.passed < 0) return;
+    sum.name = touch.name;
+    sum.passed = touch.passed;
   });
   return sum;
 }

@@ -93,7 +93,8 @@ class Body {
     return found;
   }
 
-  /// The sums over all obstacles of energies, and the largest depth, at the last evaluation.
+  /// The sums over all contacts of energies, and the largest depth, at the last evaluation; the name of one
+  /// that a node passed.
   Touch touch() const;
 
   /// See Loads::slide.

@@ -62,6 +62,16 @@ void require_healthy(const Body<Real>& body, long step) {
   require_healthy(jacobians, step);
 }
 
+void require_not_passed(const Touch& touch, const NodalField& points, long step) {
+  if (touch.passed < 0) return;
+  const Vector& X = points[at(touch.passed)];
+  throw ComputationError(fmt::format(
+      "step {}: contact '{}': node {}, undeformed at ({:.6g}, {:.6g}, {:.6g}) m, went deeper than "
+      "the shortest edge of an element, and may have passed through\n"
+      "remedy: a larger penalty, or less or slower pressing",
+      step, touch.name, touch.passed, X[0], X[1], X[2]));
+}
+
 template bool is_healthy(const Body<double>&);
 template bool is_healthy(const Body<float>&);
 template void require_healthy(const Body<double>&, long);

@@ -407,7 +407,6 @@ class Search {
 }  // namespace
 
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from, const NodalField* near) {
-  require_held(model.scene());
   for (const ContactForce* contact : contacts_of(model.scene().forces)) {
     const std::string_view reason = contact->traits().no_potential;
     if (reason.empty()) continue;
@@ -415,6 +414,7 @@ Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from,
         fmt::format("{}: [[{}]] has no static equilibrium: {}; allowed: a dynamic case, or leave that out",
                     model.scene().settings.file.string(), contact->traits().name, reason));
   }
+  require_held(model.scene());
   const auto start = std::chrono::steady_clock::now();
   Relaxation result = method_named(model.choice().method).is_condensed
                           ? condensed_answer(model, observer)

@@ -212,9 +212,9 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
             : "sleep: distances are counted in elements, which in a refined mesh differ in size; allowed: "
               "a mesh without [[refine]]");
   }
-  if (!contacts_of(scene.forces).empty()) {
-    throw InputError(
-        "sleep: what an obstacle touches changes with the load; allowed: a case without [[obstacle]]");
+  if (const auto contacts = contacts_of(scene.forces); !contacts.empty()) {
+    throw InputError(fmt::format("sleep: what touches changes with the load; allowed: a case without [[{}]]",
+                                 contacts.front()->traits().name));
   }
   if (pushed_nodes(scene).empty()) {
     throw InputError("sleep: all elements would sleep; impose a displacement or a force");

@@ -1,0 +1,49 @@
+#include "forces/contact.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "forces/contact_scale.hpp"
+#include "forces/surface_pair.hpp"
+
+namespace sandglass {
+
+std::optional<BrokenRule> Contact::broken_rule() const {
+  return broken_rule_of_name(label);
+}
+
+void Contact::resolve(ForceResolver& resolver) const {
+  require_own_name(resolver, name, label);
+  const auto refuse_at = [&](int node, const std::string& what, const std::string& allowed) {
+    const Vector& X = resolver.points[at(node)];
+    throw InputError(fmt::format("{}: contact '{}': node {} at ({:.6g}, {:.6g}, {:.6g}) m {}; allowed: {}",
+                                 resolver.file, label, node, X[0], X[1], X[2], what, allowed));
+  };
+  std::vector<std::vector<Quadrilateral>> surfaces{resolver.faces(name, set)};
+  auto all = surfaces.front();
+  if (!other.empty()) {
+    surfaces.push_back(resolver.faces(name, other, "other"));
+    all.insert(all.end(), surfaces[1].begin(), surfaces[1].end());
+    auto first = nodes_of(surfaces[0]), second = nodes_of(surfaces[1]);
+    std::ranges::sort(first);
+    std::ranges::sort(second);
+    std::vector<int> common;
+    std::ranges::set_intersection(first, second, std::back_inserter(common));
+    if (!common.empty()) {
+      refuse_at(common.front(), fmt::format("is on both surfaces, '{}' and '{}'", set, other),
+                "surfaces without common nodes, or one set without `other`, which may touch itself");
+    }
+  }
+  const ContactScale scale(resolver, all);
+  const auto make = method == Method::penalty ? make_penalty_pair : make_kinematic_pair;
+  auto pair = make(*this, {std::move(surfaces), scale.stiffness(penalty), scale.edge}, resolver.points,
+                   resolver.cells);
+  if (const auto deepest = pair->deepest_at_start(); deepest && deepest->depth > scale.rounding()) {
+    refuse_at(deepest->node,
+              fmt::format("is {:.3g} m inside of what it may touch at the start", deepest->depth),
+              "surfaces that do not intersect");
+  }
+  resolver.forces.push_back(std::move(pair));
+}
+
+}  // namespace sandglass

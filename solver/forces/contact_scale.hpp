@@ -1,0 +1,28 @@
+#pragma once
+
+#include "forces/force_resolver.hpp"
+
+namespace sandglass {
+
+/// What the stiffness of a contact follows: the smallest Young's modulus and the shortest edge of the
+/// elements with a face among some.
+struct ContactScale {
+  double modulus = INFINITY;  ///< Pa
+  double edge = INFINITY;     ///< m
+
+  ContactScale(const ForceResolver& resolver, const std::vector<Quadrilateral>& faces);
+
+  /// The stiffness per area, Pa/m, of a penalty.
+  double stiffness(double penalty) const { return penalty * modulus / edge; }
+
+  /// Rounding of coordinates in files, m.
+  double rounding() const { return 1e-6 * edge; }
+};
+
+/// Throws InputError unless a contact can be reported under a name (`label`) of its own.
+void require_own_name(const ForceResolver& resolver, std::string_view table, const std::string& label);
+
+/// The rule that the name of a contact breaks by itself, if any.
+std::optional<BrokenRule> broken_rule_of_name(const std::string& label);
+
+}  // namespace sandglass

@@ -1,0 +1,260 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "forces/obstacle_shape.hpp"
+#include "forces/surface_pair.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Points remember also the weights of the point of the face that they meet; the direction to it and their
+/// impulse, kg m; their impulse along the face, kg m. Nodes remember their motion in the last step, and how
+/// far the contact moves them in this one, m. The strength of points that
+/// touch is one more than the number of the triangle of the face.
+class KinematicPair final : public SurfacePair {
+ public:
+  KinematicPair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
+                std::span<const Hexahedron> cells)
+      : SurfacePair(contact, std::move(given), points, cells, 4, 2) {}
+
+  bool moves_nodes() const override { return true; }
+
+  void push_out(Factors /*factors*/, const NodalPush& nodes) const override {
+    ContactMemory memory(nodes.memory);
+    memory.pushes = memory.moves = {};
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+      for (std::size_t n = 0; n < surfaces_[s].nodes().size(); ++n) of_nodes(memory, s)[2 * n + 1] = {};
+    }
+    double deepest = 0.0;
+    const auto use = [&](const Side& side, std::size_t k, const Vector& x, const SurfaceFoot& foot) {
+      Row<double>* remembered = of_point(memory, side, k);
+      const bool is_new = remembered[0][strength] == 0.0;
+      const Vector n = direction_of(difference(foot.x, x), foot.distance());
+      remembered[0][touched_face] = foot.face;
+      remembered[0][strength] = 1.0 + static_cast<double>(foot.triangle);
+      remembered[1] = weights_before(meeting_of(side, k, memory), n, nodes);
+      remembered[2] = {{n[0], n[1], n[2], is_new ? 0.0 : remembered[2][3]}};
+      const Vector along{remembered[3][0], remembered[3][1], remembered[3][2]};
+      const Vector kept = is_new ? Vector{} : sum(along, -dot(along, n), n);
+      remembered[3] = {{kept[0], kept[1], kept[2]}};
+      deepest = std::max(deepest, foot.distance());
+    };
+    for_each_touch(nodes.u, memory, use, [](Row<double>*) {});
+    for_each_meeting(memory, [&](const Meeting& meeting) {  // as in the last step, to begin with
+      push(meeting, meeting.impulse(), nodes);
+      return 0.0;
+    });
+    constexpr int most_sweeps = 20;
+    constexpr double resolved = 1e-3;
+    for (int sweep = 0; sweep < most_sweeps && deepest > 0.0; ++sweep) {
+      const double largest =
+          for_each_meeting(memory, [&](const Meeting& meeting) { return separate(meeting, nodes); });
+      if (largest < resolved * deepest) break;
+    }
+    for_each_meeting(memory, [&](const Meeting& meeting) {
+      turn(meeting, nodes);
+      return 0.0;
+    });
+    settle_accounts(nodes, memory);
+  }
+
+  void add_contact(Factors /*factors*/, NodalRows /*u*/, Row<double>* /*rows*/,
+                   AtNodes<Row<double>> /*forces*/) const override {}
+  void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
+                 std::vector<LoadRates>& /*rates*/) const override {}
+
+  void begin_again(const Vector& force, Row<double>* rows) const override {
+    ContactForce::begin_again(force, rows);
+    ContactMemory(rows).others[0][has_moved] = 0.0;
+  }
+
+ private:
+  /// A point that touches, and the face.
+  struct Meeting {
+    const MovingSurface &from, &onto;
+    const SurfacePoint& point;
+    const Quadrilateral& corners;
+    const Row<double>& weights;  // of the corners
+    Row<double>&normal, &along;  // with the impulses
+    Row<double>*of_from, *of_onto, *nodes_from, *nodes_onto;
+
+    std::size_t triangle;  // of the face
+
+    Vector direction() const { return {normal[0], normal[1], normal[2]}; }
+    Vector impulse() const { return sum({along[0], along[1], along[2]}, normal[3], direction()); }
+
+    /// Calls use(node, place, weight, rows of its surface, rows of nodes) for all nodes of both.
+    template <class Use>
+    void for_each_node(const Use& use) const {
+      for (std::size_t I = 0; I < 4; ++I) {
+        const std::size_t place = at(point.nodes[I]);
+        if (point.weights[I] != 0.0) use(from.nodes()[place], place, point.weights[I], of_from, nodes_from);
+      }
+      for (std::size_t I = 0; I < 4; ++I) {
+        const std::size_t place = at(corners[I]);
+        use(onto.nodes()[place], place, -weights[I], of_onto, nodes_onto);
+      }
+    }
+  };
+
+  /// The largest of use(meeting) for all points that touch.
+  template <class Use>
+  double for_each_meeting(ContactMemory& memory, const Use& use) const {
+    double largest = 0.0;
+    for (const Side& side : sides_) {
+      for (std::size_t k = 0; k < surfaces_[side.from].points().size(); ++k) {
+        if (of_point(memory, side, k)[0][strength] == 0.0) continue;
+        largest = std::max(largest, use(meeting_of(side, k, memory)));
+      }
+    }
+    return largest;
+  }
+
+  Meeting meeting_of(const Side& side, std::size_t k, ContactMemory& memory) const {
+    const MovingSurface &from = surfaces_[side.from], &onto = surfaces_[side.onto];
+    Row<double>* remembered = of_point(memory, side, k);
+    return {from,
+            onto,
+            from.points()[k],
+            onto.corners(static_cast<int>(remembered[0][touched_face])),
+            remembered[1],
+            remembered[2],
+            remembered[3],
+            of_surface(memory, side.from),
+            of_surface(memory, side.onto),
+            of_nodes(memory, side.from),
+            of_nodes(memory, side.onto),
+            static_cast<std::size_t>(remembered[0][strength]) - 1};
+  }
+
+  /// The weights of the point of the face that was in a direction from the point before the step: an impulse
+  /// along it has no moment.
+  static Row<double> weights_before(const Meeting& meeting, const Vector& direction, const NodalPush& nodes) {
+    const auto before = [&](const MovingSurface& surface, const Row<double>* rows, int place) {
+      const Row<double>&x = rows[place], &increment = nodes.increment[surface.nodes()[at(place)]];
+      return Vector{x[0] - increment[0], x[1] - increment[1], x[2] - increment[2]};
+    };
+    Vector x{};
+    std::array<Vector, 4> corners;
+    for (std::size_t I = 0; I < 4; ++I) {
+      x = sum(x, meeting.point.weights[I], before(meeting.from, meeting.of_from, meeting.point.nodes[I]));
+      corners[I] = before(meeting.onto, meeting.of_onto, meeting.corners[I]);
+    }
+    return MovingSurface::weights_along(corners, meeting.triangle, x, direction);
+  }
+
+  /// Moves the impulse on the face to where it has no moment with friction either.
+  static void turn(const Meeting& meeting, const NodalPush& nodes) {
+    const Vector impulse = meeting.impulse();
+    if (meeting.along.x == Row<double>{}.x) return;
+    const Row<double> there = weights_before(meeting, impulse, nodes);
+    for (std::size_t I = 0; I < 4; ++I) {
+      const int place = meeting.corners[I], node = meeting.onto.nodes()[at(place)];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double by = (meeting.weights[I] - there[I]) * nodes.inverse_masses[node][i] * impulse[i];
+        nodes.u[node][i] += by;
+        nodes.increment[node][i] += by;
+        meeting.of_onto[place][i] += by;
+        meeting.nodes_onto[2 * at(place) + 1][i] += by;
+      }
+    }
+  }
+
+  /// Moves the nodes of a point and of the face that it touches by an impulse, kg m.
+  static void push(const Meeting& meeting, const Vector& impulse, const NodalPush& nodes) {
+    meeting.for_each_node([&](int node, std::size_t place, double weight, Row<double>* x, Row<double>* rows) {
+      const Row<double>& w = nodes.inverse_masses[node];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double by = weight * w[i] * impulse[i];
+        nodes.u[node][i] += by;
+        nodes.increment[node][i] += by;
+        x[place][i] += by;
+        rows[2 * place + 1][i] += by;
+      }
+    });
+  }
+
+  /// Changes the impulse of a point so that it is on the face. Returns by how much it moves, m.
+  double separate(const Meeting& meeting, const NodalPush& nodes) const {
+    const Vector n = meeting.direction();
+    Vector apart{}, motion{};
+    double along_n = 0.0, mobility = 0.0;  // 1/kg, along n and in the mean
+    meeting.for_each_node(
+        [&](int node, std::size_t place, double weight, const Row<double>* x, Row<double>*) {
+          const Row<double>&w = nodes.inverse_masses[node], &increment = nodes.increment[node];
+          for (std::size_t i = 0; i < 3; ++i) {
+            apart[i] += weight * x[place][i];
+            motion[i] += weight * increment[i];
+            along_n += weight * weight * w[i] * n[i] * n[i];
+            mobility += weight * weight * w[i] / 3.0;
+          }
+        });
+    if (!(along_n > 0.0)) return 0.0;
+    double& impulse = meeting.normal[3];
+    const double before = std::exchange(impulse, std::max(0.0, impulse - dot(apart, n) / along_n));
+    Vector change = sum({}, impulse - before, n);
+    if (contact_.friction > 0.0) {
+      const Vector old{meeting.along[0], meeting.along[1], meeting.along[2]};
+      Vector held = sum(old, -1.0 / mobility, sum(motion, -dot(motion, n), n));
+      const double size = std::sqrt(dot(held, held)), most = contact_.friction * impulse;
+      if (size > most) held = sum({}, most / size, held);
+      change = sum(change, 1.0, difference(held, old));
+      meeting.along = {{held[0], held[1], held[2]}};
+    }
+    push(meeting, change, nodes);
+    return std::abs(impulse - before) * along_n;
+  }
+
+  /// The force of a node is its mass times the change of velocity over the step. It acts between two steps,
+  /// so its work is the product with the mean of their motions, and lost.
+  void settle_accounts(const NodalPush& nodes, ContactMemory& memory) const {
+    Row<double>& of_pair = memory.others[0];
+    double farthest = 0.0;
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+      Row<double>* rows = of_nodes(memory, s);
+      for (std::size_t n = 0; n < surfaces_[s].nodes().size(); ++n) {
+        const int node = surfaces_[s].nodes()[n];
+        Row<double>& last = rows[2 * n];
+        const Row<double>&moved = rows[2 * n + 1], &motion = nodes.increment[node],
+              &w = nodes.inverse_masses[node];
+        for (std::size_t i = 0; i < 3; ++i) {
+          // The force of the first step acts for half of it.
+          if (of_pair[has_moved] == 0.0) last[i] = 0.5 * (motion[i] - moved[i]);
+          if (w[i] > 0.0 && moved[i] != 0.0) {
+            const double force = moved[i] / (w[i] * nodes.gain);
+            if (s == 0 && surfaces_.size() > 1) memory.pushes[i] += force;
+            memory.sums[0] -= 0.5 * force * (last[i] + motion[i]);
+            farthest = std::max(farthest, std::abs(moved[i]));
+          }
+          last[i] = motion[i];
+        }
+      }
+    }
+    of_pair[has_moved] = 1.0;
+    of_pair[way_so_far] += std::sqrt(3.0) * farthest;
+    memory.moves[3] = for_each_meeting(memory, [](const Meeting& meeting) {  // what is left
+      double apart = 0.0;
+      meeting.for_each_node([&](int, std::size_t place, double weight, const Row<double>* x, Row<double>*) {
+        for (std::size_t i = 0; i < 3; ++i) apart -= weight * x[place][i] * meeting.normal[i];
+      });
+      return apart;
+    });
+  }
+
+  std::shared_ptr<const BodyForce> on(SurfacesOfPair given, const NodalField& points,
+                                      std::span<const Hexahedron> cells) const override {
+    return make_kinematic_pair(contact_, std::move(given), points, cells);
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<SurfacePair> make_kinematic_pair(const Contact& contact, SurfacesOfPair given,
+                                                 const NodalField& points,
+                                                 std::span<const Hexahedron> cells) {
+  return std::make_shared<KinematicPair>(contact, std::move(given), points, cells);
+}
+
+}  // namespace sandglass

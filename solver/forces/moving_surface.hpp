@@ -1,0 +1,121 @@
+#pragma once
+
+#include "forces/body_force.hpp"
+#include "forces/box_tree.hpp"
+
+namespace sandglass {
+
+/// A material point of a surface: the mean of the corners of a face with weights that add up to one. It is a
+/// corner of faces, the middle of an edge or of a face.
+struct SurfacePoint {
+  Row<double> weights;
+  double area;          ///< its share of the undeformed surface by Simpson's rule, m^2
+  Quadrilateral nodes;  ///< by their places in the surface
+};
+
+/// The point of a surface that is closest to another.
+struct SurfaceFoot {
+  double square;  ///< of the distance, m^2
+  int face = -1;  ///< -1: none is closer than that
+  std::size_t triangle = 0;
+  Row<double> weights = {};  ///< of the corners of the face
+  Vector x = {};             ///< m
+  bool behind = false;       ///< whether the other point is behind it
+
+  double distance() const { return std::sqrt(square); }
+};
+
+/// Boundary faces of a deformable body where it is now. Faces are four triangles about their middles. What
+/// changes is in rows that the caller keeps, zeros at the start.
+class MovingSurface {
+ public:
+  /// `points` of the mesh, m.
+  MovingSurface(const NodalField& points, const std::vector<Quadrilateral>& faces);
+
+  /// Its nodes in the mesh, in order.
+  const std::vector<int>& nodes() const { return nodes_; }
+
+  /// All corners, middles of edges and middles of faces, which Simpson's rule takes: with these areas a
+  /// uniform pressure has its consistent nodal forces.
+  const std::vector<SurfacePoint>& points() const { return points_; }
+
+  std::size_t rows() const { return 2 * nodes_.size() + tree_.rows(); }
+
+  /// Moves it to displacements u (m). Returns the largest distance (m) by which a node moved.
+  template <class Displacements>
+  double move(const Displacements& u, Row<double>* rows) const {
+    double most = 0.0;
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      const Row<double>& of_node = u[nodes_[n]];
+      double square = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double x = undeformed_[n][i] + of_node[i], way = x - rows[n][i];
+        rows[n][i] = x;
+        square += way * way;
+      }
+      most = std::max(most, square);
+    }
+    return std::sqrt(most);
+  }
+
+  /// Fits normals and the tree to the present position, as `closest` needs them.
+  void fit(Row<double>* rows) const;
+
+  /// The mean of positions (m) of the nodes.
+  static Vector position(const Quadrilateral& nodes, const Row<double>& weights, const Row<double>* rows) {
+    return mean(nodes, weights, rows);
+  }
+
+  /// The mean of the sums of normals of the faces around each node; not of length one.
+  Vector normal(const Quadrilateral& nodes, const Row<double>& weights, const Row<double>* rows) const {
+    return mean(nodes, weights, rows + nodes_.size());
+  }
+
+  /// The undeformed area of a face, m^2.
+  double area(int face) const { return areas_[at(face)]; }
+
+  /// The corners of a face.
+  const Quadrilateral& corners(int face) const { return faces_[at(face)]; }
+
+  /// The closest point to x (m) within `reach` (m) on faces that oppose a normal, except those of a sorted
+  /// list. Beyond the rim of an open surface, its faces go on in their planes. Allocates nothing.
+  SurfaceFoot closest(const Vector& x, const Vector& normal, double reach, const std::vector<int>& except,
+                      const Row<double>* rows) const;
+
+  /// The weights of the corners of a face at the projection of x (m) onto the plane of one of its triangles,
+  /// also beyond the triangle.
+  Row<double> weights_at(const SurfaceFoot& foot, const Vector& x, const Row<double>* rows) const;
+
+  /// The same at the projection of x (m) along a direction onto the plane of a triangle of a face with these
+  /// corners (m).
+  static Row<double> weights_along(const std::array<Vector, 4>& corners, std::size_t triangle,
+                                   const Vector& x, const Vector& direction);
+
+ private:
+  static Vector mean(const Quadrilateral& nodes, const Row<double>& weights, const Row<double>* rows) {
+    Vector sum_of_all{};
+    for (std::size_t I = 0; I < 4; ++I) {
+      for (std::size_t i = 0; i < 3; ++i) sum_of_all[i] += weights[I] * rows[nodes[I]][i];
+    }
+    return sum_of_all;
+  }
+
+  std::array<Vector, 4> corners_now(int face, const Row<double>* rows) const;
+  void set_behind(const Vector& x, SurfaceFoot& foot, const Row<double>* rows) const;
+
+  std::vector<int> nodes_;
+  NodalField undeformed_;                    // m
+  std::vector<Quadrilateral> faces_;         // by places in nodes_
+  std::vector<double> areas_;                // of faces, m^2
+  std::vector<std::array<bool, 4>> on_rim_;  // whether no other face has this edge of a face
+  std::vector<SurfacePoint> points_;
+  BoxTree tree_;
+};
+
+/// For each point of a surface, the faces (sorted) of another, or of itself, that touch an element around it:
+/// its neighbours, with which it is connected.
+std::vector<std::vector<int>> faces_around(const MovingSurface& surface,
+                                           const std::vector<Quadrilateral>& faces,
+                                           std::span<const Hexahedron> cells);
+
+}  // namespace sandglass

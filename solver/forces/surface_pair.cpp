@@ -1,0 +1,78 @@
+#include "forces/surface_pair.hpp"
+
+#include <algorithm>
+
+namespace sandglass {
+
+namespace {
+
+constexpr std::string_view only_motion = "surfaces touch each other in motions only";
+
+std::vector<int> nodes_of_all(const std::vector<std::vector<Quadrilateral>>& surfaces) {
+  std::vector<int> nodes;
+  for (const auto& faces : surfaces) {
+    for (const int node : nodes_of(faces)) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+}  // namespace
+
+SurfacePair::SurfacePair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
+                         std::span<const Hexahedron> cells, std::size_t by_point, std::size_t by_node)
+    : ContactForce(nodes_of_all(given.faces),
+                   {Contact::name, false,
+                    contact.friction > 0.0 || contact.method == Contact::Method::kinematic, only_motion}),
+      contact_(contact),
+      given_(std::move(given)),
+      by_point_(by_point) {
+  for (const auto& faces : given_.faces) {
+    surfaces_.emplace_back(points, faces);
+    rows_of_.push_back(memory_ - ContactMemory::own);
+    memory_ += surfaces_.back().rows() + by_node * surfaces_.back().nodes().size();
+  }
+  for (std::size_t from = 0; from < surfaces_.size(); ++from) {
+    const std::size_t onto = surfaces_.size() - 1 - from;
+    sides_.push_back(
+        {from, onto, faces_around(surfaces_[from], given_.faces[onto], cells), memory_ - ContactMemory::own});
+    memory_ += by_point * surfaces_[from].points().size();
+  }
+}
+
+Touch SurfacePair::touch(const Row<double>* memory) const {
+  Touch touch = touch_of(contact_.label, memory);
+  touch.passed = static_cast<int>(memory[ContactMemory::own][passed_node]) - 1;
+  return touch;
+}
+
+int SurfacePair::node_of(const MovingSurface& surface, const SurfacePoint& point) {
+  const auto& weights = point.weights.x;
+  const auto I = static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
+  return surface.nodes()[at(point.nodes[I])];
+}
+
+std::shared_ptr<const BodyForce> SurfacePair::restricted_to(const MeshPart& part) const {
+  SurfacesOfPair inside = given_;
+  for (auto& faces : inside.faces) {
+    faces = faces_in(part, faces);
+    if (faces.empty()) return nullptr;
+  }
+  return on(std::move(inside), part.mesh.points, part.mesh.cells);
+}
+
+std::optional<SurfacePair::Deepest> SurfacePair::deepest_at_start() const {
+  const Rows<double> undeformed(1);
+  const std::vector<int> first(at(*std::ranges::max_element(nodes())) + 1, 0);
+  Rows<double> rows(memory_);
+  ContactMemory memory(rows.data());
+  std::optional<Deepest> deepest;
+  const auto use = [&](const Side& side, std::size_t k, const Vector& /*x*/, const SurfaceFoot& foot) {
+    if (deepest && foot.distance() <= deepest->depth) return;
+    const MovingSurface& from = surfaces_[side.from];
+    deepest = {node_of(from, from.points()[k]), foot.distance()};
+  };
+  for_each_touch(NodalRows(undeformed.data(), first), memory, use, [](Row<double>*) {});
+  return deepest;
+}
+
+}  // namespace sandglass

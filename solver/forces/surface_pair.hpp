@@ -1,0 +1,153 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "forces/contact.hpp"
+#include "forces/contact_force.hpp"
+#include "forces/moving_surface.hpp"
+
+namespace sandglass {
+
+/// What a pair of surfaces acts with: one surface touches itself.
+struct SurfacesOfPair {
+  std::vector<std::vector<Quadrilateral>> faces;  ///< of one or two surfaces
+  double stiffness;                               ///< of a penalty: pressure over depth, Pa/m
+  double reach;                                   ///< the largest depth that is followed, m
+};
+
+/// Points of a surface against faces of the other, and the other way round, or of a surface against its own
+/// faces: what all methods share. A point touches if it is behind a face that opposes it, not deeper than the
+/// reach. Points far from all faces are searched again only when nodes have moved far enough to touch.
+class SurfacePair : public ContactForce {
+ public:
+  /// A node, or one next to a point, and its depth, m.
+  struct Deepest {
+    int node;
+    double depth;
+  };
+
+  /// The deepest point of the undeformed body; none if there is no contact.
+  std::optional<Deepest> deepest_at_start() const;
+
+  std::size_t memory() const final { return memory_; }
+  Touch touch(const Row<double>* memory) const final;
+  double half_thickness() const final { return given_.reach; }
+  double travel() const final { return 0.0; }
+  std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final;
+
+  // There is no static search.
+  void add_contact_potential(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
+                             double& /*sum*/) const final {}
+  void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
+                             AtNodes<Row<float>> /*roots*/) const final {}
+
+ protected:
+  /// What a pair remembers in its first row: the sum of the largest ways of nodes, m; one more than the
+  /// number of a node that passed through; whether it has taken a step.
+  enum OfPair : std::size_t { way_so_far = 0, passed_node = 1, has_moved = 2 };
+
+  /// What points remember in their first row: until which way they touch nothing, m; the face that they
+  /// touch; their strength, zero if they do not touch; their depth then, m.
+  enum OfPoint : std::size_t { clear_until = 0, touched_face = 1, strength = 2, last_depth = 3 };
+
+  /// The points of one surface against the faces of another.
+  struct Side {
+    std::size_t from, onto;                    // surfaces
+    std::vector<std::vector<int>> neighbours;  // faces that each point never touches
+    std::size_t first_row;                     // of its points
+  };
+
+  /// `by_point` and `by_node` are the numbers of rows that points and nodes remember.
+  SurfacePair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
+              std::span<const Hexahedron> cells, std::size_t by_point, std::size_t by_node);
+
+  /// The same pair with other surfaces.
+  virtual std::shared_ptr<const BodyForce> on(SurfacesOfPair given, const NodalField& points,
+                                              std::span<const Hexahedron> cells) const = 0;
+
+  Row<double>* of_point(ContactMemory& memory, const Side& side, std::size_t k) const {
+    return memory.others + side.first_row + by_point_ * k;
+  }
+
+  /// The rows of a surface; then those of its nodes.
+  Row<double>* of_surface(ContactMemory& memory, std::size_t s) const { return memory.others + rows_of_[s]; }
+  Row<double>* of_nodes(ContactMemory& memory, std::size_t s) const {
+    return of_surface(memory, s) + surfaces_[s].rows();
+  }
+
+  /// Calls use(side, k, x, foot) for all points k at x (m) that touch at displacements u (m), and
+  /// let_go(of_point) for points that touched before and do not now.
+  template <class Displacements, class Use, class LetGo>
+  void for_each_touch(const Displacements& u, ContactMemory& memory, const Use& use,
+                      const LetGo& let_go) const;
+
+  const Contact contact_;
+  const SurfacesOfPair given_;
+  std::vector<MovingSurface> surfaces_;
+  std::vector<Side> sides_;
+
+ private:
+  /// A node with the largest weight.
+  static int node_of(const MovingSurface& surface, const SurfacePoint& point);
+
+  const std::size_t by_point_;
+  std::vector<std::size_t> rows_of_;  // the first of each surface
+  std::size_t memory_ = ContactMemory::own + 1;
+};
+
+template <class Displacements, class Use, class LetGo>
+void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, const Use& use,
+                                 const LetGo& let_go) const {
+  Row<double>& of_pair = memory.others[0];
+  double& way = of_pair[way_so_far];
+  double most = 0.0;
+  for (std::size_t s = 0; s < surfaces_.size(); ++s)
+    most = std::max(most, surfaces_[s].move(u, of_surface(memory, s)));
+  way += most;
+  bool fits = false;
+  for (const Side& side : sides_) {
+    const MovingSurface &from = surfaces_[side.from], &onto = surfaces_[side.onto];
+    Row<double>*of_from = of_surface(memory, side.from), *of_onto = of_surface(memory, side.onto);
+    for (std::size_t k = 0; k < from.points().size(); ++k) {
+      Row<double>& one = of_point(memory, side, k)[0];
+      if (one[clear_until] > way) continue;
+      if (!fits) {
+        for (std::size_t s = 0; s < surfaces_.size(); ++s) surfaces_[s].fit(of_surface(memory, s));
+        fits = true;
+      }
+      const SurfacePoint& point = from.points()[k];
+      const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
+      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), given_.reach,
+                                            side.neighbours[k], of_onto);
+      // Both surfaces may move by half the distance before they touch.
+      one[clear_until] = foot.behind ? way : way + 0.5 * foot.distance();
+      if (foot.behind) {
+        use(side, k, x, foot);
+        one[touched_face] = foot.face;
+        one[last_depth] = foot.distance();
+      } else if (one[strength] > 0.0) {
+        constexpr double deep = 0.8;  // of the reach: no step leads from there to the outside
+        if (one[last_depth] > deep * given_.reach) of_pair[passed_node] = 1 + node_of(from, point);
+        let_go(&one);
+        one[strength] = 0.0;
+      }
+    }
+  }
+}
+
+/// By a penalty: a spring pulls a point that touches to the closest point of the face; with friction to a
+/// point that slips along the face and stays within the coefficient of friction times the depth of it. The
+/// spring pulls both material points along the line between them, so that momentum and its moment are kept.
+/// Half of the stiffness acts on each side. Springs of points are not stiffer than those of the faces they
+/// touch.
+std::shared_ptr<SurfacePair> make_penalty_pair(const Contact& contact, SurfacesOfPair given,
+                                               const NodalField& points, std::span<const Hexahedron> cells);
+
+/// By moving nodes: within a step, points that touch are moved back to the closest point of the face, and the
+/// face to them, by impulses along the line between them, the smallest that separate all points. Friction
+/// takes from their relative motion along the face at most the coefficient of friction times the impulse.
+std::shared_ptr<SurfacePair> make_kinematic_pair(const Contact& contact, SurfacesOfPair given,
+                                                 const NodalField& points, std::span<const Hexahedron> cells);
+
+}  // namespace sandglass
