@@ -49,8 +49,11 @@ class Recorder final : public Observer {
   void history(const HistoryRow& row) override { rows.push_back(row); }
   bool proceed(long /*step*/, double share, double /*residual*/) override { return watch_.proceed(share); }
 
+  void stepped(double time, double size) override { steps.add(time, size); }
+
   std::vector<Frame> frames;
   std::vector<HistoryRow> rows;
+  TakenSteps steps;  // of a motion
 
  private:
   Watch& watch_;
@@ -96,6 +99,7 @@ class Answer : public NeverUnmade {
     });
     frames_ = std::move(recorder.frames);
     rows_ = std::move(recorder.rows);
+    steps_ = std::move(recorder.steps);
   }
 
   const Scene& scene() const {
@@ -168,11 +172,30 @@ class Answer : public NeverUnmade {
     return {found.largest, found.rms};
   }
 
+  /// See sandglass.Solution.
+  py::dict gradient(const py::object& displacements, const std::map<std::string, Vector>& reactions,
+                    bool points) const {
+    require_made("Answer");
+    if (scene_.settings.quasi_static) {
+      if (points) require_loads_without_shape();
+      return derivatives().gradient(displacements, reactions, points);
+    }
+    const auto refuse = [](const char* what) {
+      throw InputError(
+          fmt::format("{}: not available for motions; allowed: a scalar of displacements, and its "
+                      "derivatives without points=True",
+                      what));
+    };
+    if (!reactions.empty()) refuse("reactions");
+    if (points) refuse("points");
+    return sandglass::gradient(*model_, steps_, frames_, displacements);
+  }
+
   /// See Derivatives. Throws InputError for a motion, and for an answer of the awake part.
   Derivatives& derivatives() const {
     require_made("Answer");
     if (!scene_.settings.quasi_static)
-      throw InputError("derivatives: the answer is a motion; allowed: a static answer");
+      throw InputError("sensitivity: the answer is a motion; allowed: a static answer, or its gradient");
     if (!derivatives_) throw InputError("derivatives: elements sleep; allowed: an answer without sleep");
     return *derivatives_;
   }
@@ -253,6 +276,7 @@ class Answer : public NeverUnmade {
   std::unique_ptr<const Model> model_;
   std::vector<Frame> frames_;
   std::vector<HistoryRow> rows_;
+  TakenSteps steps_;  // of a motion
   std::unique_ptr<Derivatives> derivatives_;  // of a static answer of the whole body
   Summary summary_;
 };
@@ -304,10 +328,8 @@ void add_answers(py::module_& m) {
       .def(
           "gradient",
           [](const Answer& answer, const py::object& displacements,
-             const std::map<std::string, Vector>& reactions, bool points) {
-            if (points) answer.require_loads_without_shape();
-            return answer.derivatives().gradient(displacements, reactions, points);
-          },
+             const std::map<std::string, Vector>& reactions,
+             bool points) { return answer.gradient(displacements, reactions, points); },
           "displacements"_a, "reactions"_a, "points"_a,
           "The derivatives of a scalar by everything; see sandglass.Solution.")
       .def(

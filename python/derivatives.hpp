@@ -9,13 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "solve/sensitivities.hpp"
+#include "solve/motion_gradient.hpp"
 
 namespace sandglass {
 
 /// A field on `nodes` nodes from an array of Python; empty if it is None. Throws TypeError and InputError
 /// that name it.
 NodalField nodal_field(const char* name, const pybind11::object& given, std::size_t nodes);
+
+/// The derivatives of a scalar J of a motion with the derivatives dJ/du (frames, n, 3) at its frames, or None.
+pybind11::dict gradient(const Model& model, const TakenSteps& steps, const std::vector<Frame>& frames,
+                        const pybind11::object& displacements);
 
 /// The derivatives of a static answer, in arrays of Python. The tangent is made when it is first needed; it
 /// serves one thread at a time, and the GIL is free meanwhile.

@@ -61,6 +61,13 @@ class BodyForce {
   /// Adds its forces, N.
   virtual void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const = 0;
 
+  /// Adds the derivatives of the power of its forces at velocities w, as if these were constant, by the
+  /// displacements and by the increments: the transposed tangent times w. Dead forces have none; those of
+  /// obstacles are not available.
+  virtual void add_derivatives_of_power(Factors /*factors*/, const NodalMotion& /*motion*/, NodalRows /*w*/,
+                                        AtNodes<Row<double>> /*by_u*/,
+                                        AtNodes<Row<double>> /*by_increment*/) const {}
+
   /// Adds the potential (J) at displacements u (m): the forces are minus its derivative.
   virtual void add_potential(Factors factors, NodalRows u, double& sum) const = 0;
 

@@ -29,6 +29,23 @@ class FacePressures final : public BodyForce {
     }
   }
 
+  void add_derivatives_of_power(Factors factors, const NodalMotion& motion, NodalRows w,
+                                AtNodes<Row<double>> by_u,
+                                AtNodes<Row<double>> /*by_increment*/) const override {
+    const double p = factors[curve_] * value_;
+    if (p == 0.0) return;
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      std::array<Vector, 4> velocities{};
+      for (std::size_t I = 0; I < 4; ++I) {
+        for (std::size_t i = 0; i < 3; ++i) velocities[I][i] = w[faces_[k][I]][i];
+      }
+      const auto unit = derivatives_of_pressure_power(corners(k, motion.u), velocities);
+      for (std::size_t I = 0; I < 4; ++I) {
+        for (std::size_t i = 0; i < 3; ++i) by_u[faces_[k][I]][i] += p * unit[I][i];
+      }
+    }
+  }
+
   /// Exact if the edges of the faces are held or lie in planes of symmetry through the origin: the volume
   /// below a face is a third of the integral of x . n da.
   void add_potential(Factors factors, NodalRows u, double& sum) const override {

@@ -11,27 +11,61 @@ std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& 
   return corners;
 }
 
-std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners) {
+namespace {
+
+/// The shape functions of the four nodes of a face and their derivatives, at a Gauss point.
+struct FaceShape {
+  std::array<double, 4> N, by_xi, by_eta;
+};
+
+std::array<FaceShape, 4> shapes_at_gauss_points() {
   constexpr std::array<std::array<double, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   const double a = 1.0 / std::sqrt(3.0);
-  std::array<FacePoint, 4> result;
+  std::array<FaceShape, 4> shapes{};
   for (std::size_t q = 0; q < 4; ++q) {
     const double xi = a * signs[q][0], eta = a * signs[q][1];
-    Triple<double> X{}, along_xi{}, along_eta{};
     for (std::size_t I = 0; I < 4; ++I) {
       const auto [s, t] = signs[I];
-      const Triple<double> X_I{corners[I]};
-      result[q].N[I] = (1.0 + s * xi) * (1.0 + t * eta) / 4.0;
-      X += result[q].N[I] * X_I;
-      along_xi += (s * (1.0 + t * eta) / 4.0) * X_I;
-      along_eta += (t * (1.0 + s * xi) / 4.0) * X_I;
+      shapes[q].N[I] = (1.0 + s * xi) * (1.0 + t * eta) / 4.0;
+      shapes[q].by_xi[I] = s * (1.0 + t * eta) / 4.0;
+      shapes[q].by_eta[I] = t * (1.0 + s * xi) / 4.0;
     }
-    const Triple<double> normal = cross(along_xi, along_eta);
-    result[q].X = X;
-    result[q].normal = normal;
-    result[q].area = std::sqrt(double_dot(normal, normal));
+  }
+  return shapes;
+}
+
+/// The sum of vectors at the nodes of a face, weighted.
+Triple<double> sum(const std::array<double, 4>& weights, const std::array<Vector, 4>& vectors) {
+  Triple<double> sum{};
+  for (std::size_t I = 0; I < 4; ++I) sum += weights[I] * Triple<double>{vectors[I]};
+  return sum;
+}
+
+}  // namespace
+
+std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners) {
+  const std::array<FaceShape, 4> shapes = shapes_at_gauss_points();
+  std::array<FacePoint, 4> result;
+  for (std::size_t q = 0; q < 4; ++q) {
+    const auto& [N, by_xi, by_eta] = shapes[q];
+    const Triple<double> normal = cross(sum(by_xi, corners), sum(by_eta, corners));
+    result[q] = {N, sum(N, corners), std::sqrt(double_dot(normal, normal)), normal};
   }
   return result;
+}
+
+std::array<Vector, 4> derivatives_of_pressure_power(const std::array<Vector, 4>& x,
+                                                    const std::array<Vector, 4>& w) {
+  std::array<Vector, 4> derivatives{};
+  for (const auto& [N, by_xi, by_eta] : shapes_at_gauss_points()) {
+    const Triple<double> v = sum(N, w);  // the power is -v . (dx/dxi x dx/deta)
+    const Triple<double> by_x_xi = cross(sum(by_eta, x), v), by_x_eta = cross(v, sum(by_xi, x));
+    for (std::size_t I = 0; I < 4; ++I) {
+      for (std::size_t i = 0; i < 3; ++i)
+        derivatives[I][i] -= by_xi[I] * by_x_xi.entries[i] + by_eta[I] * by_x_eta.entries[i];
+    }
+  }
+  return derivatives;
 }
 
 std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x) {

@@ -27,20 +27,13 @@ constexpr int most_corrections = 30, most_cycles = 120, most_products = 2000;
 /// curve as lambda / mu times this, and lambda / mu times double precision, over this, is their rounding.
 constexpr double change = 2e-7;
 
-/// The largest displacement over the size of the body in differences of loads, which are almost linear.
-constexpr double change_for_loads = 1e-5;
-
-const InternalForce<double>& elements_of(const Model& model) {
-  return *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
-}
-
 }  // namespace
 
 StaticTangent::StaticTangent(const Model& model, const NodalField& u, std::vector<double> levels)
-    : model_(model), u_(u), levels_(std::move(levels)), mixed_(model, elements_of(model)) {
+    : model_(model), u_(u), levels_(std::move(levels)), mixed_(model, double_elements(model)) {
   Body<double>& body = mixed_.body();
-  body.state() = state_at(elements_of(model), u_);
-  if (!levels_.empty()) elements_of(model).set_levels(body.state(), levels_);
+  body.state() = state_at(double_elements(model), u_);
+  if (!levels_.empty()) double_elements(model).set_levels(body.state(), levels_);
   body.impose(1.0);
   mixed_.linearize();
   mixed_.weigh();
@@ -55,27 +48,10 @@ StaticTangent::StaticTangent(const Model& model, const NodalField& u, std::vecto
 void StaticTangent::add_stiffness_of_loads(const Rows<double>& a, Rows<double>& forces) const {
   const Scene& scene = model_.scene();
   if (first_not_dead(scene.forces) == nullptr) return;
-  double largest = 0.0;
-  for (const auto& row : a) {
-    for (std::size_t i = 0; i < 3; ++i) largest = std::max(largest, std::abs(row[i]));
-  }
-  if (!(largest > 0.0)) return;
   Loads<double> loads(scene, layout());
   loads.set(1.0, 1.0);
-  double diameter = 0.0;
-  for (const Vector& X : scene.mesh.points) diameter = std::max(diameter, distance(X, scene.mesh.points[0]));
-  const double length = change_for_loads * diameter / largest;
-  State<double> state = state_;
-  for (const double side : {1.0, -1.0}) {
-    for (std::size_t row = 0; row < a.size(); ++row) {
-      for (std::size_t i = 0; i < 3; ++i) state.u[row][i] = state_.u[row][i] + side * length * a[row][i];
-    }
-    Rows<double> load(a.size());
-    loads.subtract(state, load);
-    for (std::size_t row = 0; row < a.size(); ++row) {
-      for (std::size_t i = 0; i < 3; ++i) forces[row][i] += side / (2.0 * length) * load[row][i];
-    }
-  }
+  Rows<double> by_increment(a.size());  // none without time
+  loads.subtract_derivatives_of_power(state_, a, forces, by_increment);
 }
 
 NodalField StaticTangent::product(const NodalField& a) const {

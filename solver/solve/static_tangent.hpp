@@ -38,7 +38,7 @@ class StaticTangent {
   const Layout& layout() const { return mixed_.body().layout(); }
   const MixedBlocks& blocks() const { return mixed_.multigrid().elements().blocks(); }
 
-  /// Adds the stiffness of forces other than dead ones, times a.
+  /// Adds the stiffness of forces other than dead ones, which is symmetric as they have a potential, times a.
   void add_stiffness_of_loads(const Rows<double>& a, Rows<double>& forces) const;
 
   /// b - K a on free components.

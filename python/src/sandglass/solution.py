@@ -104,17 +104,22 @@ class Solution:
         return self._answer.estimate(text("against", against))
 
     def gradient(self, displacement=None, reactions=None, *, points=False):
-        """The derivatives of a scalar J of this static answer by all that it depends on.
+        """The derivatives of a scalar J of this answer by all that it depends on.
 
-        `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to dJ/dR, (3,).
-        `points`: whether also by the undeformed positions of nodes, which takes longer. One
-        adjoint problem for all parameters together, which costs about as much as `solve`. Dead
-        loads and springs may act. Levels of adaptive elements count as constant.
+        Of a static answer: `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to
+        dJ/dR, (3,). `points`: whether also by the undeformed positions of nodes, which takes
+        longer. One adjoint problem for all parameters together, which costs about as much as
+        `solve`. Dead loads and springs may act. Levels of adaptive elements count as constant.
+
+        Of a motion: `displacement`: dJ/du at all frames, (frames, n, 3). The steps are computed
+        again and followed back, each as it was: the derivative is that of the computed motion at
+        constant steps. Memory grows as the root of their number.
 
         Returns an `sg.Gradient`. Raises InputError with `points` where gravity, forces on faces or
-        springs act, as these depend on the positions; where forces have no potential (Updated
-        Lagrangian methods, pressures), with obstacles, in single precision and for motions;
-        ComputationError for an answer that is not stable.
+        springs act, as these depend on the positions; where the forces of elements have no
+        potential (Updated Lagrangian methods), with obstacles, in single precision; for static
+        answers with pressures; for motions with viscoelastic laws, subcycles, tl-adaptive, and by
+        reactions or points; ComputationError for a static answer that is not stable.
         """
         reactions = {} if reactions is None else reactions
         found = self._answer.gradient(displacement, reactions, points)
