@@ -276,7 +276,7 @@ class Answer : public NeverUnmade {
   std::unique_ptr<const Model> model_;
   std::vector<Frame> frames_;
   std::vector<HistoryRow> rows_;
-  TakenSteps steps_;  // of a motion
+  TakenSteps steps_;                          // of a motion
   std::unique_ptr<Derivatives> derivatives_;  // of a static answer of the whole body
   Summary summary_;
 };

@@ -17,7 +17,8 @@ namespace sandglass {
 /// that name it.
 NodalField nodal_field(const char* name, const pybind11::object& given, std::size_t nodes);
 
-/// The derivatives of a scalar J of a motion with the derivatives dJ/du (frames, n, 3) at its frames, or None.
+/// The derivatives of a scalar J of a motion with the derivatives dJ/du (frames, n, 3) at its frames, or
+/// None.
 pybind11::dict gradient(const Model& model, const TakenSteps& steps, const std::vector<Frame>& frames,
                         const pybind11::object& displacements);
 

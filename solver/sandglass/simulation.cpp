@@ -124,7 +124,8 @@ class Simulation<Real>::Parts {
     for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
     factor_ = share * factor_to_ + rest * factor_from_;
     leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed_, factor_, leapfrog_.time()); });
-    return leapfrog_.step() % scene().settings.dynamics.check_interval != 0 || check();
+    const bool last = !(share < 1.0), due = leapfrog_.step() % scene().settings.dynamics.check_interval == 0;
+    return !(due || (last && !is_finite(body()))) || check();
   }
 
   /// False as in `take`.

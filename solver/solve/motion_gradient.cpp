@@ -76,7 +76,8 @@ class MotionAdjoint {
   Gradient gradient(const std::map<std::size_t, NodalField>& of_displacements, const NodalField& last) {
     const std::size_t end = of_displacements.empty() ? 0 : of_displacements.rbegin()->first;
     const auto root = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(end))));
-    const std::size_t length = std::max({std::size_t{1}, root, free_memory / (sizeof(Row<double>) * w_.size())});
+    const std::size_t length =
+        std::max({std::size_t{1}, root, free_memory / (sizeof(Row<double>) * w_.size())});
     std::vector<std::vector<std::byte>> starts;  // the states at which segments begin
     for (std::size_t n = 0; n < end; ++n) {
       if (n % length == 0) {
@@ -142,7 +143,8 @@ class MotionAdjoint {
   }
 
   /// From the derivatives by the state after the n-th step to those by the state before it.
-  void reverse(std::size_t n, const Rows<double>& before, const Rows<double>& now, const Rows<double>& after) {
+  void reverse(std::size_t n, const Rows<double>& before, const Rows<double>& now,
+               const Rows<double>& after) {
     const Body<double>& body = leapfrog_.body();
     const LeapfrogClock::Coefficients step = clock(n).advance(steps_[n].size);
     body.ties().hand_on(by_u_);
@@ -281,8 +283,8 @@ void require_differentiable_motion(const Model& model) {
   }
   for (const Material& material : model.scene().materials.list) {
     if (is_viscoelastic(material.law)) {
-      refuse_derivatives(fmt::format("law '{}' remembers the motion; allowed: elastic laws",
-                                     name_of(material.law)));
+      refuse_derivatives(
+          fmt::format("law '{}' remembers the motion; allowed: elastic laws", name_of(material.law)));
     }
   }
   if (model.scene().settings.dynamics.subcycles > 1)

@@ -17,10 +17,11 @@ State<double> state_of(const InternalForce<double>& elements, const std::vector<
 }  // namespace
 
 PowerDerivativeSum::PowerDerivativeSum(const Model& model, const std::vector<double>& levels)
-    : model_(model), state_(state_of(double_elements(model), levels)), powers_(model.scene().mesh.cells.size()) {
+    : model_(model),
+      state_(state_of(double_elements(model), levels)),
+      powers_(model.scene().mesh.cells.size()) {
   const Materials& own = model.scene().materials;
-  const auto steps =
-      by_material(own, [](const Material& material) { return parameter_steps(material.law); });
+  const auto steps = by_material(own, [](const Material& material) { return parameter_steps(material.law); });
   std::size_t most = 0;
   for (const auto& each : steps) {
     sum_.parameters.emplace_back(each.size(), 0.0);

@@ -19,9 +19,9 @@ struct Gradient {
   PowerDerivatives by_elements;  ///< by the parameters of laws, 1/unit, and stiffnesses of elements
   NodalField forces;             ///< by forces on nodes, 1/N; in a motion they follow the case's load
   NodalField imposed;            ///< by imposed displacements, 1/m; zero on components that are free
-  NodalField points;     ///< by reference positions of nodes, 1/m; empty if the shape is constant
-  NodalField velocities = {};  ///< by initial velocities, s/m; empty for a static answer
-  double damping = 0.0;        ///< by the damping proportional to mass, s; of a motion
+  NodalField points;             ///< by reference positions of nodes, 1/m; empty if the shape is constant
+  NodalField velocities = {};    ///< by initial velocities, s/m; empty for a static answer
+  double damping = 0.0;          ///< by the damping proportional to mass, s; of a motion
 };
 
 /// Whether derivatives by the reference positions of nodes are wanted.

@@ -18,8 +18,9 @@ namespace {
 /// rounding allows no less.
 constexpr double solved = 1e-9, acceptable = 1e-7;
 
-/// A correction reduces the residual to about this share, more would be lost in the differences of forces.
-constexpr double share_left = 1e-4;
+/// A correction reduces the residual to this share at least, more would be lost in the differences of forces;
+/// the last one only as far as the problem needs.
+constexpr double least_share = 1e-4;
 
 constexpr int most_corrections = 30, most_cycles = 120, most_products = 2000;
 
@@ -114,7 +115,7 @@ NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
     for (std::size_t row = 0; row < r.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) unit.u[row][i] = static_cast<float>(r[row][i] / size);
     }
-    const MixedVector x = correction(unit);
+    const MixedVector x = correction(unit, std::max(least_share, 0.5 * solved * first / size));
     Rows<double> next = a;
     for (std::size_t row = 0; row < a.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) next[row][i] += size * static_cast<double>(x.u[row][i]);
@@ -144,8 +145,9 @@ NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
   return to_field(a, layout());
 }
 
-MixedVector StaticTangent::correction(const MixedVector& r) {
-  return method_named(model_.choice().method).pressure_varies ? conjugate(r) : accelerated(r);
+MixedVector StaticTangent::correction(const MixedVector& r, double share_left) {
+  return method_named(model_.choice().method).pressure_varies ? conjugate(r, share_left)
+                                                              : accelerated(r, share_left);
 }
 
 MixedVector StaticTangent::mixed_product(const MixedVector& x) {
@@ -164,7 +166,7 @@ MixedVector StaticTangent::mixed_product(const MixedVector& x) {
 }
 
 /// Anderson's acceleration of the multigrid cycle, for displacements and pressures.
-MixedVector StaticTangent::accelerated(const MixedVector& r) {
+MixedVector StaticTangent::accelerated(const MixedVector& r, double share_left) {
   const MixedVector zero = mixed_.multigrid().elements().zero();
   MixedVector x = zero, b = r, best = zero, left, step, change_of_x;
   mixed_.weigh(b);
@@ -209,7 +211,7 @@ Rows<float> StaticTangent::difference_product(const MixedVector& x) {
 }
 
 /// Conjugate gradients for displacements alone, where an element has more than one pressure.
-MixedVector StaticTangent::conjugate(MixedVector r) {
+MixedVector StaticTangent::conjugate(MixedVector r, double share_left) {
   MixedVector x = mixed_.multigrid().elements().zero(), z = x, d = x, q = x;
   double rz = 0.0, first = 0.0;
   for (int k = 0; k < most_products; ++k) {

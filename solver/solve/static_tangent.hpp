@@ -47,10 +47,10 @@ class StaticTangent {
   /// The norm of forces in the weights of the preconditioner, a root of J.
   double norm(const Rows<double>& forces) const;
 
-  /// An approximate answer for `r`, whose norm is one.
-  MixedVector correction(const MixedVector& r);
-  MixedVector accelerated(const MixedVector& r);
-  MixedVector conjugate(MixedVector r);
+  /// An approximate answer for `r`, whose norm is one, that leaves a share of it.
+  MixedVector correction(const MixedVector& r, double share_left);
+  MixedVector accelerated(const MixedVector& r, double share_left);
+  MixedVector conjugate(MixedVector r, double share_left);
 
   /// Weighted K x of both unknowns, or K x (N) of displacements alone, by a difference of forces.
   MixedVector mixed_product(const MixedVector& x);

@@ -145,6 +145,8 @@ class Gradient:
     forces: _Doubles
     imposed: _Doubles
     points: _Doubles | None
+    velocities: _Doubles | None
+    damping: float | None
     def __init__(
         self,
         materials: tuple[dict[str, Any], ...],
@@ -152,6 +154,8 @@ class Gradient:
         forces: _Doubles,
         imposed: _Doubles,
         points: _Doubles | None,
+        velocities: _Doubles | None = ...,
+        damping: float | None = ...,
     ) -> None: ...
 
 class Simulation:
