@@ -174,11 +174,11 @@ class Answer : public NeverUnmade {
 
   /// See sandglass.Solution.
   py::dict gradient(const py::object& displacements, const std::map<std::string, Vector>& reactions,
-                    bool points) const {
+                    const Wanted& wanted) const {
     require_made("Answer");
     if (scene_.settings.quasi_static) {
-      if (points) require_loads_without_shape();
-      return derivatives().gradient(displacements, reactions, points);
+      if (wanted.points) require_loads_without_shape();
+      return derivatives().gradient(displacements, reactions, wanted);
     }
     const auto refuse = [](const char* what) {
       throw InputError(
@@ -187,8 +187,8 @@ class Answer : public NeverUnmade {
                       what));
     };
     if (!reactions.empty()) refuse("reactions");
-    if (points) refuse("points");
-    return sandglass::gradient(*model_, steps_, frames_, displacements);
+    if (wanted.points) refuse("points");
+    return sandglass::gradient(*model_, steps_, frames_, displacements, wanted);
   }
 
   /// See Derivatives. Throws InputError for a motion, and for an answer of the awake part.
@@ -328,9 +328,10 @@ void add_answers(py::module_& m) {
       .def(
           "gradient",
           [](const Answer& answer, const py::object& displacements,
-             const std::map<std::string, Vector>& reactions,
-             bool points) { return answer.gradient(displacements, reactions, points); },
-          "displacements"_a, "reactions"_a, "points"_a,
+             const std::map<std::string, Vector>& reactions, bool materials, bool points) {
+            return answer.gradient(displacements, reactions, {.parameters = materials, .points = points});
+          },
+          "displacements"_a, "reactions"_a, "materials"_a, "points"_a,
           "The derivatives of a scalar by everything; see sandglass.Solution.")
       .def(
           "sensitivity",

@@ -33,7 +33,7 @@ py::dict named(const Gradient& found, const Materials& materials) {
   const auto array = [](const NodalField& f) { return f.empty() ? py::none() : py::object(field(f)); };
   const bool motion = !found.velocities.empty();
   py::dict all;
-  all["materials"] = py::tuple(laws);
+  all["materials"] = laws.empty() ? py::object(py::none()) : py::tuple(laws);
   all["stiffness"] = numbers(scales);
   all["forces"] = field(found.forces);
   all["imposed"] = field(found.imposed);
@@ -46,7 +46,7 @@ py::dict named(const Gradient& found, const Materials& materials) {
 }  // namespace
 
 py::dict gradient(const Model& model, const TakenSteps& steps, const std::vector<Frame>& frames,
-                  const py::object& displacements) {
+                  const py::object& displacements, const Wanted& wanted) {
   require_differentiable_motion(model);
   const std::size_t nodes = model.scene().mesh.points.size();
   std::map<std::size_t, NodalField> of_u;
@@ -66,7 +66,7 @@ py::dict gradient(const Model& model, const TakenSteps& steps, const std::vector
     }
   }
   const py::gil_scoped_release others;
-  const Gradient found = gradient_of_motion(model, steps.all(), of_u, frames[last].u);
+  const Gradient found = gradient_of_motion(model, steps.all(), of_u, frames[last].u, wanted);
   const py::gil_scoped_acquire again;
   return named(found, model.scene().materials);
 }
@@ -105,13 +105,14 @@ auto Derivatives::with_tangent(const Use& use) {
 }
 
 py::dict Derivatives::gradient(const py::object& displacements,
-                               const std::map<std::string, Vector>& reactions, bool points) {
+                               const std::map<std::string, Vector>& reactions,
+                               const Wanted& wanted) {
   const std::size_t nodes = scene().mesh.points.size();
   NodalField of_u = nodal_field("displacement", displacements, nodes);
   of_u.resize(nodes);
   const NodalField of_R = of_reactions(reactions);
   const Gradient found = with_tangent([&](StaticTangent& tangent) {
-    return sandglass::gradient(tangent, of_u, of_R, points ? Shape::varies : Shape::constant);
+    return sandglass::gradient(tangent, of_u, of_R, wanted);
   });
   return named(found, scene().materials);
 }

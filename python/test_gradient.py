@@ -350,7 +350,6 @@ def test_wrong_input_and_answers_without_derivatives():
             r"\[\[pressure\]\] is not supported, for .*potential",
         ),
         (wall, {}, r"\[\[obstacle\]\] is not supported"),
-        (sg.Dynamics(duration=0.01), {}, "the answer is a motion; allowed: a static answer"),
         (
             sg.Relaxation(tolerance=1e-4),
             {"precision": "float"},

@@ -22,8 +22,9 @@ namespace {
 constexpr std::size_t free_memory = std::size_t{64} << 20U;
 
 /// The change of displacement gradients in differences of forces: its square is their error, and the
-/// precision of the forces over it their rounding.
-constexpr double change = 4e-6;
+/// precision of the forces over it their rounding. Where fibres begin to bear, forces have a kink, and the
+/// error is of first order.
+constexpr double change = 4e-7;
 
 /// The steps after which the ratio of an adjoint's gradient to its size is measured again.
 constexpr std::size_t steps_per_measure = 32;
@@ -55,12 +56,12 @@ double largest(const Rows<double>& rows) {
 ///   a_n = dJ/du_n + a_(n+1) + (dF/du)^T w_n,   dJ/dp = sum_n w_n . dF/dp.
 class MotionAdjoint {
  public:
-  MotionAdjoint(const Model& model, std::span<const TakenStep> steps)
+  MotionAdjoint(const Model& model, std::span<const TakenStep> steps, const Wanted& wanted)
       : model_(model),
         steps_(steps),
         leapfrog_(model, double_elements(model), settings().damping),
         loads_(model.scene(), layout()),
-        powers_(model, {}),
+        powers_(model, {}, wanted.parameters),
         state_(double_elements(model).undeformed()),
         by_u_(layout().rows()),
         by_increment_(by_u_),
@@ -82,13 +83,15 @@ class MotionAdjoint {
     for (std::size_t n = 0; n < end; ++n) {
       if (n % length == 0) {
         starts.emplace_back();
-        leapfrog_.keep(StateCopy(starts.back()));
+        StateCopy copy(starts.back());
+        leapfrog_.keep(copy);
         if (n + length >= end) break;
       }
       take(n);
     }
     for (std::size_t s = starts.size(); s-- > 0;) {
-      leapfrog_.keep(StateCopy(std::as_const(starts[s])));
+      StateCopy start(std::as_const(starts[s]));
+      leapfrog_.keep(start);
       const std::size_t first = s * length, behind = std::min(first + length, end);
       follow(first, behind);
       if (behind == end) require_repeated(last);
@@ -293,8 +296,8 @@ void require_differentiable_motion(const Model& model) {
 
 Gradient gradient_of_motion(const Model& model, std::span<const TakenStep> steps,
                             const std::map<std::size_t, NodalField>& of_displacements,
-                            const NodalField& last) {
-  return MotionAdjoint(model, steps).gradient(of_displacements, last);
+                            const NodalField& last, const Wanted& wanted) {
+  return MotionAdjoint(model, steps, wanted).gradient(of_displacements, last);
 }
 
 }  // namespace sandglass

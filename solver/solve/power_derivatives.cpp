@@ -16,10 +16,13 @@ State<double> state_of(const InternalForce<double>& elements, const std::vector<
 
 }  // namespace
 
-PowerDerivativeSum::PowerDerivativeSum(const Model& model, const std::vector<double>& levels)
+PowerDerivativeSum::PowerDerivativeSum(const Model& model, const std::vector<double>& levels,
+                                       bool of_parameters)
     : model_(model),
       state_(state_of(double_elements(model), levels)),
       powers_(model.scene().mesh.cells.size()) {
+  sum_.scales.resize(powers_.size());
+  if (!of_parameters) return;
   const Materials& own = model.scene().materials;
   const auto steps = by_material(own, [](const Material& material) { return parameter_steps(material.law); });
   std::size_t most = 0;
@@ -27,7 +30,6 @@ PowerDerivativeSum::PowerDerivativeSum(const Model& model, const std::vector<dou
     sum_.parameters.emplace_back(each.size(), 0.0);
     most = std::max(most, each.size());
   }
-  sum_.scales.resize(powers_.size());
   for (std::size_t k = 0; k < most; ++k) {  // all materials together, as an element has one
     for (const bool upwards : {false, true}) {
       const auto moves = [&](std::size_t m) { return k < steps[m].size() && steps[m][k].upwards == upwards; };

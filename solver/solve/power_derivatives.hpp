@@ -8,7 +8,7 @@ namespace sandglass {
 
 /// The derivatives of the power of the elements' forces at given velocities, as if these were constant.
 struct PowerDerivatives {
-  std::vector<std::vector<double>> parameters;  ///< by the parameters of each material's law
+  std::vector<std::vector<double>> parameters;  ///< by those of each material's law; or empty
   std::vector<double> scales;  ///< by a factor of the stiffness of each element, at the factor one
 };
 
@@ -17,8 +17,9 @@ struct PowerDerivatives {
 /// exist once for each moved parameter: parameters are plain numbers in kernels.
 class PowerDerivativeSum {
  public:
-  /// `levels` are those of an adaptive method, else empty.
-  PowerDerivativeSum(const Model& model, const std::vector<double>& levels);
+  /// `levels` are those of an adaptive method, else empty. Without `of_parameters` only stiffnesses of elements
+  /// are considered.
+  PowerDerivativeSum(const Model& model, const std::vector<double>& levels, bool of_parameters);
 
   /// Adds the derivatives at displacements u (m) and velocities v (m/s).
   void add(const Rows<double>& u, const Rows<double>& v);

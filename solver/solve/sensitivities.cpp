@@ -108,7 +108,7 @@ void require_differentiable(const Model& model, const Relaxation& answer) {
 }
 
 Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, const NodalField& of_reactions,
-                  Shape shape) {
+                  const Wanted& wanted) {
   // With v = dJ/dR on constrained components, and K v = -dJ/du on the others, dJ = v . (df_int - df).
   NodalField v = tangent.followed(constrained(tangent, of_reactions));
   NodalField b = of_displacements;
@@ -124,11 +124,11 @@ Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, co
   found.forces = zeros(tangent);
   add(-1.0, v, found.forces);
   const Scene& scene = tangent.model().scene();
-  PowerDerivativeSum powers(tangent.model(), tangent.levels());
+  PowerDerivativeSum powers(tangent.model(), tangent.levels(), wanted.parameters);
   const Layout& layout = double_elements(tangent.model()).layout();
   powers.add(to_rows<double>(tangent.displacements(), layout), to_rows<double>(v, layout));
   found.by_elements = powers.sum();
-  if (shape == Shape::constant) return found;
+  if (!wanted.points) return found;
   found.points = zeros(tangent);
   for_each_shape_derivative(tangent.model(), tangent.levels(), tangent.displacements(), v,
                             [&](std::size_t e, const NodalVectors<double>& own) {

@@ -24,8 +24,11 @@ struct Gradient {
   double damping = 0.0;          ///< by the damping proportional to mass, s; of a motion
 };
 
-/// Whether derivatives by the reference positions of nodes are wanted.
-enum class Shape { constant, varies };
+/// Which derivatives are wanted of those that take long.
+struct Wanted {
+  bool parameters = true;  ///< of laws
+  bool points = false;     ///< reference positions of nodes
+};
 
 /// Throws InputError for what no derivatives exist of: `why` has the reason and what is allowed.
 [[noreturn]] void refuse_derivatives(const std::string& why);
@@ -41,7 +44,7 @@ void require_differentiable(const Model& model, const Relaxation& answer);
 /// dJ/du (1/m) at all nodes, `of_reactions` dJ/dR (1/N) for the forces R that hold or drive nodes. Positions
 /// of nodes move no forces of loads, springs or imposed displacements.
 Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, const NodalField& of_reactions,
-                  Shape shape = Shape::constant);
+                  const Wanted& wanted = {});
 
 /// The derivative of the displacements (m) along a perturbation, from one linear problem.
 NodalField change_of_displacements(StaticTangent& tangent, const Perturbation& perturbation);

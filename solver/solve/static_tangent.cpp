@@ -22,6 +22,11 @@ constexpr double solved = 1e-9, acceptable = 1e-7;
 /// the last one only as far as the problem needs.
 constexpr double least_share = 1e-4;
 
+/// A residual below this share that has not halved in so many cycles may have reached the rounding of answers
+/// in single precision: the next correction starts from the exact residual.
+constexpr double may_be_rounding = 1e-2;
+constexpr int cycles_to_halve = 4;
+
 constexpr int most_corrections = 30, most_cycles = 120, most_products = 2000;
 
 /// The change of displacement gradients in differences of forces. In nearly incompressible bodies the forces
@@ -174,8 +179,10 @@ MixedVector StaticTangent::accelerated(const MixedVector& r, double share_left) 
   multiply(-1.0F, left, blocks());
   Acceleration acceleration(blocks());
   const double first = std::sqrt(dot(b, b, blocks()));
-  double least = first;
-  for (int k = 0; k < most_cycles && least > share_left * first; ++k) {
+  double least = first, halved = first;
+  int waited = 0;
+  const auto stagnates = [&] { return waited == cycles_to_halve && halved < may_be_rounding * first; };
+  for (int k = 0; k < most_cycles && least > share_left * first && !stagnates(); ++k) {
     step = zero;
     acceleration.combine(left, step);
     change_of_x = left;
@@ -190,6 +197,11 @@ MixedVector StaticTangent::accelerated(const MixedVector& r, double share_left) 
     if (size < least) {
       least = size;
       best = x;
+    }
+    waited = std::min(waited + 1, cycles_to_halve);
+    if (size < 0.5 * halved) {
+      halved = size;
+      waited = 0;
     }
   }
   return best;

@@ -124,6 +124,7 @@ class Solution:
         displacement: ArrayLike | None = ...,
         reactions: Mapping[str, ArrayLike] | None = ...,
         *,
+        materials: bool = ...,
         points: bool = ...,
     ) -> Gradient: ...
     def sensitivity(
@@ -140,7 +141,7 @@ class Solution:
     def save(self, file: _Path) -> None: ...
 
 class Gradient:
-    materials: tuple[dict[str, Any], ...]
+    materials: tuple[dict[str, Any], ...] | None
     stiffness: _Doubles
     forces: _Doubles
     imposed: _Doubles
@@ -149,7 +150,7 @@ class Gradient:
     damping: float | None
     def __init__(
         self,
-        materials: tuple[dict[str, Any], ...],
+        materials: tuple[dict[str, Any], ...] | None,
         stiffness: _Doubles,
         forces: _Doubles,
         imposed: _Doubles,

@@ -13,7 +13,7 @@ class Gradient:
         self.materials = materials
         """A dict for each material of the body, in their order: from the parameters of its law, as
         `help(sg.NeoHookean)` lists them, to derivatives; without the density. By a parameter that
-        is an array, one number for each of its elements, an array."""
+        is an array, one number for each of its elements, an array. None with `materials=False`."""
         self.stiffness = stiffness
         """By a factor, at 1, of the stiffness of each element: law and hourglass control; (m,)."""
         self.forces = forces
