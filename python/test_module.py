@@ -186,6 +186,17 @@ def test_errors_are_exceptions_with_the_solvers_words(case, body):
         body.advance(0.1)
 
 
+@pytest.mark.parametrize("far", [1e3, 1e60, 1e300])
+def test_no_advance_ends_with_nan(body, far):
+    """However few steps it takes: displacements overflow long before the 20th, the first check."""
+    body.move("head", [far, 0, 0])
+    with pytest.raises(sandglass.ComputationError, match="no longer finite"):
+        for _ in range(10):
+            body.advance(body.step_size)
+            assert np.isfinite(body.displacements).all()
+    assert body.time == 0 and not np.array(body.displacements).any()
+
+
 def test_other_threads_run_while_it_steps_and_cannot_step_it_too(body):
     """The other thread counts while the main one is in `advance`, so the GIL is released."""
     counted, refused, done = [], [], threading.Event()
