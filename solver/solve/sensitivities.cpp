@@ -12,16 +12,6 @@ namespace sandglass {
 
 namespace {
 
-/// Calls visit(parameter, value) for each parameter of a law.
-template <class Visit>
-void for_each_parameter(AnyLaw& any_law, const Visit& visit) {
-  std::visit(
-      [&]<class Law>(Law& law) {
-        std::apply([&](const auto&... p) { (visit(p, law.*p.member), ...); }, Law::parameters());
-      },
-      any_law);
-}
-
 /// A difference formula of second order: sum_k weight_k f(x + offset_k h) / h.
 struct Term {
   double offset, weight;
