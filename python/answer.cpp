@@ -177,22 +177,6 @@ class Answer : public NeverUnmade {
     return *derivatives_;
   }
 
-  /// Throws InputError if loads change with the undeformed positions of nodes, which derivatives by these do
-  /// not contain.
-  void require_loads_without_shape() const {
-    const auto& forces = problem_.description.forces;
-    const auto refuse = [](std::string_view what) {
-      throw InputError(
-          fmt::format("points: {} changes with the points, which their derivative does not contain; "
-                      "allowed: imposed displacements, forces with on = \"nodes\", masses",
-                      what));
-    };
-    if (!forces.of<Gravity>().empty()) refuse("[[gravity]]");
-    if (!forces.of<Support>().empty()) refuse("[[support]]");
-    for (const DeadForce& force : forces.of<DeadForce>())
-      if (force.on == DeadForce::Carrier::faces) refuse("[[force]] on faces");
-  }
-
   void write(const std::filesystem::path& path, const std::string& writer) const {
     require_made("Answer");
     ResultWriter result(*model_, path, {{"written by", writer}, {"method", choice_.method}});
@@ -283,6 +267,10 @@ void add_answers(py::module_& m) {
       },
       "The declared tables of a case file.");
   m.def(
+      "share",
+      [](const std::string& name, const std::string& text) { return parse_share(name.c_str(), text); },
+      "name"_a, "text"_a, "A share of a text such as \"2%\", as `sandglass run` reads it.");
+  m.def(
       "mesh_of_keys", [](const std::string& keys) { return tuple_of(mesh_of_keys(keys)); }, "keys"_a,
       "Points, cells, node sets and element sets of a table [mesh].");
 
@@ -304,10 +292,8 @@ void add_answers(py::module_& m) {
       .def(
           "gradient",
           [](const Answer& answer, const py::object& displacements,
-             const std::map<std::string, Vector>& reactions, bool points) {
-            if (points) answer.require_loads_without_shape();
-            return answer.derivatives().gradient(displacements, reactions, points);
-          },
+             const std::map<std::string, Vector>& reactions,
+             bool points) { return answer.derivatives().gradient(displacements, reactions, points); },
           "displacements"_a, "reactions"_a, "points"_a,
           "The derivatives of a scalar by everything; see sandglass.Solution.")
       .def(

@@ -19,8 +19,8 @@ class Gradient:
         self.imposed = imposed
         """By the imposed displacement of each node, 1/m; (n, 3). Zero on free components."""
         self.points = points
-        """By the undeformed position of each node, 1/m; (n, 3). The forces of loads on nodes,
-        springs, imposed displacements and fibres count as constant. None without `points=True`."""
+        """By the undeformed position of each node, 1/m; (n, 3): weights, areas and the arms of
+        rotations change, too; fibres count as constant. None without `points=True`."""
 
     def __repr__(self):
         return f"<sg.Gradient: materials {list(self.materials)}>"
