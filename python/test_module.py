@@ -148,11 +148,12 @@ def test_a_copy_is_a_snapshot(body):
     assert snapshot.displacements.base is snapshot
 
 
+@pytest.mark.parametrize("method", ["tl-perturbation", "tl-adaptive", "ul-perturbation"])
 @pytest.mark.parametrize("precision", ["double", "float"])
-def test_a_saved_simulation_is_resumed_with_the_same_bits(case, tmp_path, precision):
+def test_a_saved_simulation_is_resumed_with_the_same_bits(case, tmp_path, precision, method):
     """In the middle of a path, between two checks of the elements, by a new simulation."""
     file = tmp_path / "state.checkpoint"
-    body = sandglass.Simulation(case, precision=precision)
+    body = sandglass.Simulation(case, precision=precision, method=method)
     body.move("head", END)
     body.advance(0.05)
     body.advance(3.3 * body.step_size)
@@ -160,7 +161,7 @@ def test_a_saved_simulation_is_resumed_with_the_same_bits(case, tmp_path, precis
     body.impose(0.4)
     body.save_checkpoint(file)
     kept = body.displacements.copy()
-    other = sandglass.Simulation(case, precision=precision)
+    other = sandglass.Simulation(case, precision=precision, method=method)
     view = other.displacements
     other.resume(str(file))
     assert other.time == body.time and other.step_size == body.step_size
