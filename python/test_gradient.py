@@ -288,8 +288,8 @@ TURN = {"set": "head", "axis": "z", "angle": 25, "displacement": (0, 0, 0.01)}
 @pytest.mark.parametrize(
     "loads",
     [
-        [sg.Gravity(value=(1, -2, -9.81))],
-        [sg.Gravity(value=(0, 0, -9.81)), sg.Mass(set="side", total=0.05)],
+        [sg.Gravity(value=(1, -1, 5))],
+        [sg.Gravity(value=(0, -1, 5)), sg.Mass(set="side", total=0.05)],
         [sg.Force(set="side", total=(0.3, 0.2, 0.5), moment=(0.01, 0, 0.02))],
         [sg.Force(set="side", total=(0.3, 0.2, 0.5), times=[0, 1], factors=[0, 0.5])],
         [sg.Force(set="side", total=(0.2, 0, 0)), sg.Support(set="head", stiffness=1e5)],
@@ -301,7 +301,8 @@ TURN = {"set": "head", "axis": "z", "angle": 25, "displacement": (0, 0, 0.01)}
     ids=lambda loads: " ".join(f"{type(each).__name__}{len(each._values)}" for each in loads),
 )
 def test_loads_change_with_the_positions_of_nodes(loads, method):
-    """Volumes, areas, normals, centroids and arms; of displacements and of reactions."""
+    """Volumes, areas, normals, centroids and arms; of displacements and of reactions. Weight pulls
+    upwards: bodies that topple have other answers nearby, which differences would find."""
     law = sg.NeoHookean(young_modulus=6e3, poisson_ratio=0.4, density=1000)
     grid = sg.Body(BOX, law, sets=SETS).mesh
     rng = np.random.default_rng(8)
@@ -367,19 +368,19 @@ def test_wrong_input_and_answers_without_derivatives():
             {"materials": [{}, {"mu": 1.0}]},
             "'mu' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson",
         ),
-        ({"materials": [{}, {"young_modulus": np.nan}]}, "'young_modulus' must be finite"),
+        ({"materials": [{}, {"young_modulus": np.nan}]}, "young_modulus must be finite"),
         ({"forces": np.zeros(3)}, "forces must have the shape"),
         ({"imposed": np.zeros((1, 3))}, "imposed must have the shape"),
     ]:
         with pytest.raises(sg.InputError, match=words):
             solution.sensitivity(**arguments)
-    for materials, words in [
+    for changes, words in [
         ("soft", "materials must be a list of dicts, but is a str"),
         ([{}, 3], r"materials\[1\] must be a dict, but is a int"),
         ([{}, {"young_modulus": "soft"}], r"materials\[1\]: young_modulus must be an array of num"),
     ]:
         with pytest.raises(TypeError, match=words):
-            solution.sensitivity(materials)
+            solution.sensitivity(changes)
     nothing = solution.gradient(np.zeros((n, 3)))
     assert not nothing.forces.any() and nothing.materials[0]["young_modulus"] == 0
     wall = sg.Obstacle(name="wall", set="side", shape="plane", point=(0.2, 0, 0), normal=(-1, 0, 0))
