@@ -177,7 +177,6 @@ class Answer : public NeverUnmade {
                     const Wanted& wanted) const {
     require_made("Answer");
     if (scene_.settings.quasi_static) {
-      if (wanted.points) require_loads_without_shape();
       return derivatives().gradient(displacements, reactions, wanted);
     }
     const auto refuse = [](const char* what) {
@@ -198,22 +197,6 @@ class Answer : public NeverUnmade {
       throw InputError("sensitivity: the answer is a motion; allowed: a static answer, or its gradient");
     if (!derivatives_) throw InputError("derivatives: elements sleep; allowed: an answer without sleep");
     return *derivatives_;
-  }
-
-  /// Throws InputError if loads change with the undeformed positions of nodes, which derivatives by these do
-  /// not contain.
-  void require_loads_without_shape() const {
-    const auto& forces = problem_.description.forces;
-    const auto refuse = [](std::string_view what) {
-      throw InputError(
-          fmt::format("points: {} changes with the points, which their derivative does not contain; "
-                      "allowed: imposed displacements, forces with on = \"nodes\", masses",
-                      what));
-    };
-    if (!forces.of<Gravity>().empty()) refuse("[[gravity]]");
-    if (!forces.of<Support>().empty()) refuse("[[support]]");
-    for (const DeadForce& force : forces.of<DeadForce>())
-      if (force.on == DeadForce::Carrier::faces) refuse("[[force]] on faces");
   }
 
   void write(const std::filesystem::path& path, const std::string& writer) const {
@@ -306,6 +289,10 @@ void add_answers(py::module_& m) {
         return tables;
       },
       "The declared tables of a case file.");
+  m.def(
+      "share",
+      [](const std::string& name, const std::string& text) { return parse_share(name.c_str(), text); },
+      "name"_a, "text"_a, "A share of a text such as \"2%\", as `sandglass run` reads it.");
   m.def(
       "mesh_of_keys", [](const std::string& keys) { return tuple_of(mesh_of_keys(keys)); }, "keys"_a,
       "Points, cells, node sets and element sets of a table [mesh].");

@@ -45,6 +45,18 @@ struct ForceTraits {
   std::string_view no_potential;  ///< why it has no potential, as far as is known; empty if it has one
 };
 
+/// A motion of a body at displacements u (m), and the derivatives of a power by its undeformed shape: by
+/// reference positions of nodes, with u held, and by their masses. All fields are of all nodes.
+struct ShapeSlopes {
+  const NodalField& points;           ///< reference positions, m
+  const std::vector<double>& masses;  ///< kg
+  const NodalField& u;                ///< m
+  const NodalField& u_rate;           ///< m/s, on which dashpots act; empty: none
+  const NodalField& v;                ///< m/s, with which the power is meant
+  NodalField& by_points;              ///< W/m
+  std::vector<double>& by_masses;     ///< W/kg
+};
+
 /// The factors of all load curves of a scene.
 using Factors = std::span<const double>;
 
@@ -70,6 +82,10 @@ class BodyForce {
 
   /// Adds the potential (J) at displacements u (m): the forces are minus its derivative.
   virtual void add_potential(Factors factors, NodalRows u, double& sum) const = 0;
+
+  /// Adds the derivatives of the power of its forces by the shape of the body. Throws InputError if it has
+  /// none.
+  virtual void add_slopes(Factors factors, const ShapeSlopes& shape) const = 0;
 
   /// Adds its share to the bounds of the frequencies of all nodes of the mesh, from their masses (kg) and the
   /// largest factors of the curves.

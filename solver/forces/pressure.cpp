@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/vectors.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -56,6 +58,21 @@ class FacePressures final : public BodyForce {
         sum -= factors[curve_] * value_ / 3.0 *
                (x[I][0] * forces[I][0] + x[I][1] * forces[I][1] + x[I][2] * forces[I][2]);
       }
+    }
+  }
+
+  void add_slopes(Factors factors, const ShapeSlopes& shape) const override {
+    for (const Quadrilateral& face : faces_) {
+      const auto v = corners_of(shape.v, face), u = corners_of(shape.u, face);
+      auto x = corners_of(shape.points, face);
+      for (std::size_t I = 0; I < 4; ++I) x[I] = sandglass::sum(x[I], 1.0, u[I]);
+      const auto power = [&](const auto& points) {
+        Dual<double> sum;
+        for (const auto& point : points)
+          sum = sum - double_dot(from_double<Dual<double>>(interpolated(point.N, v)), point.normal);
+        return sum;
+      };
+      add_at_corners(factors[curve_] * value_, slopes_by_corners(x, power), face, shape.by_points);
     }
   }
 

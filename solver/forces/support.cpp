@@ -39,6 +39,29 @@ class FaceSupports final : public BodyForce {
     }
   }
 
+  void add_slopes(Factors /*factors*/, const ShapeSlopes& shape) const override {
+    const auto add = [&](double stiffness, const NodalField& field) {
+      for (const Quadrilateral& face : faces_) {
+        const auto a = corners_of(field, face), v = corners_of(shape.v, face);
+        const auto product = [&](const auto& points) {
+          Dual<double> sum;
+          for (const auto& point : points) {
+            const auto a_q = from_double<Dual<double>>(interpolated(point.N, a)),
+                       v_q = from_double<Dual<double>>(interpolated(point.N, v));
+            sum = sum + (support_.only_normal
+                             ? double_dot(point.normal, a_q) * double_dot(point.normal, v_q) / point.area
+                             : double_dot(a_q, v_q) * point.area);
+          }
+          return sum;
+        };
+        add_at_corners(-stiffness, slopes_by_corners(corners_of(shape.points, face), product), face,
+                       shape.by_points);
+      }
+    };
+    add(support_.stiffness, shape.u);
+    if (!shape.u_rate.empty()) add(support_.damping, shape.u_rate);
+  }
+
   /// Treats each node as if its share of the area supported it alone.
   void add_rates(Factors /*largest*/, const std::vector<double>& masses,
                  std::vector<LoadRates>& rates) const override {

@@ -101,6 +101,14 @@ class Simulation {
   /// Throws ComputationError if no equilibrium is found; the body is then as it was.
   long settle();
 
+  /// Writes the present state and the targets of driven nodes to a file, which is replaced as a whole or not
+  /// at all. Throws InputError or ComputationError if that fails.
+  void save(const std::filesystem::path& file) const;
+
+  /// Takes the state that `save` wrote, from which the same program moves on with the same bits. Throws
+  /// InputError for a damaged file, and for one of another case, mesh or settings, with the differences.
+  void resume(const std::filesystem::path& file);
+
   double time() const;       ///< s
   double step_size() const;  ///< s, the longest step at present
 

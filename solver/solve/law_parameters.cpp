@@ -8,16 +8,6 @@ namespace sandglass {
 
 namespace {
 
-/// Calls visit(parameter, value) for each parameter of a law.
-template <class Visit>
-void for_each_parameter(AnyLaw& any_law, const Visit& visit) {
-  std::visit(
-      [&]<class Law>(Law& law) {
-        std::apply([&](const auto&... p) { (visit(p, law.*p.member), ...); }, Law::parameters());
-      },
-      any_law);
-}
-
 constexpr std::array<DifferenceTerm, 2> central{{{-1.0, -0.5}, {1.0, 0.5}}};
 constexpr std::array<DifferenceTerm, 3> forward{{{0.0, -1.5}, {1.0, 2.0}, {2.0, -0.5}}};
 

@@ -7,6 +7,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "problem/shape_slopes.hpp"
 #include "solve/law_parameters.hpp"
 
 namespace sandglass {
@@ -134,6 +135,10 @@ Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, co
                             [&](std::size_t e, const NodalVectors<double>& own) {
                               scatter_add(own, scene.mesh.cells[e], found.points);
                             });
+  std::vector<double> factors;
+  for (const LoadCurve& curve : scene.curves) factors.push_back(curve.at(1.0, 1.0));
+  add_slopes_of_forces(-1.0, scene, factors, {tangent.displacements(), {}, v}, found.points);
+  add_slopes_of_rotations(scene, 1.0, found.imposed, found.points);
   return found;
 }
 

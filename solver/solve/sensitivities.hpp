@@ -42,7 +42,8 @@ void require_differentiable(const Model& model, const Relaxation& answer);
 
 /// The derivatives of J by everything that it depends on, from one adjoint problem. `of_displacements` is
 /// dJ/du (1/m) at all nodes, `of_reactions` dJ/dR (1/N) for the forces R that hold or drive nodes. Positions
-/// of nodes move no forces of loads, springs or imposed displacements.
+/// of nodes change volumes and areas, thus weights, loads and springs on faces, and the arms of rotations;
+/// axes of materials stay.
 Gradient gradient(StaticTangent& tangent, const NodalField& of_displacements, const NodalField& of_reactions,
                   const Wanted& wanted = {});
 

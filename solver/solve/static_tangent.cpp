@@ -111,8 +111,15 @@ NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
   Rows<double> b = to_rows<double>(handed_on(b_at_nodes), layout());
   mixed_.body().constraints().clear(b);
   Rows<double> a(b.size());
+  double unit_force = 0.0;  // with which no square overflows
+  for (const auto& row : b)
+    unit_force = std::max({unit_force, std::abs(row[0]), std::abs(row[1]), std::abs(row[2])});
+  if (!(unit_force > 0.0)) return to_field(a, layout());
+  const auto multiply = [](Rows<double>& rows, double factor) {
+    for (auto& row : rows) row = {{factor * row[0], factor * row[1], factor * row[2]}};
+  };
+  multiply(b, 1.0 / unit_force);
   const double first = norm(b);
-  if (!(first > 0.0)) return to_field(a, layout());
   Rows<double> r = b;
   double size = first;
   for (int k = 0; k < most_corrections && size > solved * first; ++k) {
@@ -147,6 +154,7 @@ NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
     throw ComputationError(
         "the equilibrium is unstable: its stiffness is negative along the answer of the linear problem");
   }
+  multiply(a, unit_force);
   return to_field(a, layout());
 }
 

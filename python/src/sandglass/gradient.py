@@ -22,8 +22,8 @@ class Gradient:
         self.imposed = imposed
         """By the imposed displacement of each node, 1/m; (n, 3). Zero on free components."""
         self.points = points
-        """By the undeformed position of each node, 1/m; (n, 3). The forces of loads on nodes,
-        springs, imposed displacements and fibres count as constant. None without `points=True`."""
+        """By the undeformed position of each node, 1/m; (n, 3): weights, areas and the arms of
+        rotations change, too; fibres count as constant. None without `points=True`."""
         self.velocities = velocities
         """By the initial velocity of each node, s/m; (n, 3). None for a static answer."""
         self.damping = damping
