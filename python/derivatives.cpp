@@ -105,15 +105,13 @@ auto Derivatives::with_tangent(const Use& use) {
 }
 
 py::dict Derivatives::gradient(const py::object& displacements,
-                               const std::map<std::string, Vector>& reactions,
-                               const Wanted& wanted) {
+                               const std::map<std::string, Vector>& reactions, const Wanted& wanted) {
   const std::size_t nodes = scene().mesh.points.size();
   NodalField of_u = nodal_field("displacement", displacements, nodes);
   of_u.resize(nodes);
   const NodalField of_R = of_reactions(reactions);
-  const Gradient found = with_tangent([&](StaticTangent& tangent) {
-    return sandglass::gradient(tangent, of_u, of_R, wanted);
-  });
+  const Gradient found =
+      with_tangent([&](StaticTangent& tangent) { return sandglass::gradient(tangent, of_u, of_R, wanted); });
   return named(found, scene().materials);
 }
 

@@ -295,8 +295,8 @@ void require_differentiable_motion(const Model& model) {
 }
 
 Gradient gradient_of_motion(const Model& model, std::span<const TakenStep> steps,
-                            const std::map<std::size_t, NodalField>& of_displacements,
-                            const NodalField& last, const Wanted& wanted) {
+                            const std::map<std::size_t, NodalField>& of_displacements, const NodalField& last,
+                            const Wanted& wanted) {
   return MotionAdjoint(model, steps, wanted).gradient(of_displacements, last);
 }
 

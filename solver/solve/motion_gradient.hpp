@@ -36,9 +36,10 @@ void require_differentiable_motion(const Model& model);
 /// The derivatives of a scalar J of a motion by everything that it depends on, with its steps as they were.
 /// `of_displacements` has dJ/du (1/m) at all nodes, by the number of steps after which u is taken. The motion
 /// is computed again, and `last` must be its displacements (m) after the last of these steps; the adjoint of
-/// each step follows in reverse. Positions of nodes are not available. Throws ComputationError if the motion is not the same again.
+/// each step follows in reverse. Positions of nodes are not available. Throws ComputationError if the motion
+/// is not the same again.
 Gradient gradient_of_motion(const Model& model, std::span<const TakenStep> steps,
-                            const std::map<std::size_t, NodalField>& of_displacements,
-                            const NodalField& last, const Wanted& wanted = {});
+                            const std::map<std::size_t, NodalField>& of_displacements, const NodalField& last,
+                            const Wanted& wanted = {});
 
 }  // namespace sandglass

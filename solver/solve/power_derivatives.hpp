@@ -17,8 +17,8 @@ struct PowerDerivatives {
 /// exist once for each moved parameter: parameters are plain numbers in kernels.
 class PowerDerivativeSum {
  public:
-  /// `levels` are those of an adaptive method, else empty. Without `of_parameters` only stiffnesses of elements
-  /// are considered.
+  /// `levels` are those of an adaptive method, else empty. Without `of_parameters` only stiffnesses of
+  /// elements are considered.
   PowerDerivativeSum(const Model& model, const std::vector<double>& levels, bool of_parameters);
 
   /// Adds the derivatives at displacements u (m) and velocities v (m/s).
