@@ -206,8 +206,11 @@ std::unique_ptr<BatchForce<Number>> assemble_batch(const Mesh& mesh, std::span<c
       return std::make_unique<BatchLoop<Form, Law, Number, Constant>>(mesh, bodies, std::move(laws),
                                                                       settings);
     };
-    using Shared = std::type_identity<typename Lanes<Number>::Scalar>;
-    if (bodies.size() > 1) return loop(std::type_identity<Number>{}, laws_of_bodies<Number>(bodies));
+    using Real = typename Lanes<Number>::Scalar;
+    using Shared = std::type_identity<Real>;
+    // Without a control they are geometry alone, the same for all bodies.
+    using Own = std::type_identity<std::conditional_t<Method::Hourglass::traits.active, Number, Real>>;
+    if (bodies.size() > 1) return loop(Own{}, laws_of_bodies<Number>(bodies));
     const KernelLaws laws = kernel_laws(bodies.front());
     if (const auto* known = std::get_if<std::vector<NeoHookean>>(&laws)) return loop(Shared{}, *known);
     return loop(Shared{}, std::get<std::vector<CalledLaw>>(laws));
