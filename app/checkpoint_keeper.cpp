@@ -32,18 +32,9 @@ std::string input_hash(const Scene& scene) {
   return hash_of(bytes.str());
 }
 
-Identity identity_of(const Model& model) {
-  const Scene& scene = model.scene();
-  const MethodChoice& choice = model.choice();
-  Identity identity{{"case", scene.settings.name},
-                    {"case_hash", scene.case_hash},
-                    {"mesh_hash", scene.mesh_hash},
-                    {"input_hash", input_hash(scene)},
-                    {"method", choice.method},
-                    {"kappa", choice.kappa ? fmt::to_string(*choice.kappa) : "auto"},
-                    {"kappa_modulus", choice.kappa_modulus == KappaModulus::shear ? "shear" : "p-wave"},
-                    {"accuracy", fmt::to_string(choice.accuracy)},
-                    {"precision", std::string(name_of(choice.precision))}};
+Identity identity_of_run(const Model& model) {
+  Identity identity = identity_of(model);
+  identity.emplace_back("input_hash", input_hash(model.scene()));
   for (auto& entry : program_identity()) identity.push_back(std::move(entry));
   return identity;
 }
@@ -52,7 +43,7 @@ Identity identity_of(const Model& model) {
 
 CheckpointKeeper::CheckpointKeeper(const Model& model, fs::path file, double seconds)
     : file_(std::move(file)),
-      identity_(identity_of(model)),
+      identity_(identity_of_run(model)),
       interval_(seconds),
       ranks_(model.choice().ranks) {
   require_place(file_);

@@ -49,8 +49,11 @@ class Recorder final : public Observer {
   void history(const HistoryRow& row) override { rows.push_back(row); }
   bool proceed(long /*step*/, double share, double /*residual*/) override { return watch_.proceed(share); }
 
+  void stepped(double time, double size) override { steps.add(time, size); }
+
   std::vector<Frame> frames;
   std::vector<HistoryRow> rows;
+  TakenSteps steps;  // of a motion
 
  private:
   Watch& watch_;
@@ -96,6 +99,7 @@ class Answer : public NeverUnmade {
     });
     frames_ = std::move(recorder.frames);
     rows_ = std::move(recorder.rows);
+    steps_ = std::move(recorder.steps);
   }
 
   const Scene& scene() const {
@@ -168,29 +172,31 @@ class Answer : public NeverUnmade {
     return {found.largest, found.rms};
   }
 
+  /// See sandglass.Solution.
+  py::dict gradient(const py::object& displacements, const std::map<std::string, Vector>& reactions,
+                    const Wanted& wanted) const {
+    require_made("Answer");
+    if (scene_.settings.quasi_static) {
+      return derivatives().gradient(displacements, reactions, wanted);
+    }
+    const auto refuse = [](const char* what) {
+      throw InputError(
+          fmt::format("{}: not available for motions; allowed: a scalar of displacements, and its "
+                      "derivatives without points=True",
+                      what));
+    };
+    if (!reactions.empty()) refuse("reactions");
+    if (wanted.points) refuse("points");
+    return sandglass::gradient(*model_, steps_, frames_, displacements, wanted);
+  }
+
   /// See Derivatives. Throws InputError for a motion, and for an answer of the awake part.
   Derivatives& derivatives() const {
     require_made("Answer");
     if (!scene_.settings.quasi_static)
-      throw InputError("derivatives: the answer is a motion; allowed: a static answer");
+      throw InputError("sensitivity: the answer is a motion; allowed: a static answer, or its gradient");
     if (!derivatives_) throw InputError("derivatives: elements sleep; allowed: an answer without sleep");
     return *derivatives_;
-  }
-
-  /// Throws InputError if loads change with the undeformed positions of nodes, which derivatives by these do
-  /// not contain.
-  void require_loads_without_shape() const {
-    const auto& forces = problem_.description.forces;
-    const auto refuse = [](std::string_view what) {
-      throw InputError(
-          fmt::format("points: {} changes with the points, which their derivative does not contain; "
-                      "allowed: imposed displacements, forces with on = \"nodes\", masses",
-                      what));
-    };
-    if (!forces.of<Gravity>().empty()) refuse("[[gravity]]");
-    if (!forces.of<Support>().empty()) refuse("[[support]]");
-    for (const DeadForce& force : forces.of<DeadForce>())
-      if (force.on == DeadForce::Carrier::faces) refuse("[[force]] on faces");
   }
 
   void write(const std::filesystem::path& path, const std::string& writer) const {
@@ -253,6 +259,7 @@ class Answer : public NeverUnmade {
   std::unique_ptr<const Model> model_;
   std::vector<Frame> frames_;
   std::vector<HistoryRow> rows_;
+  TakenSteps steps_;                          // of a motion
   std::unique_ptr<Derivatives> derivatives_;  // of a static answer of the whole body
   Summary summary_;
 };
@@ -283,6 +290,10 @@ void add_answers(py::module_& m) {
       },
       "The declared tables of a case file.");
   m.def(
+      "share",
+      [](const std::string& name, const std::string& text) { return parse_share(name.c_str(), text); },
+      "name"_a, "text"_a, "A share of a text such as \"2%\", as `sandglass run` reads it.");
+  m.def(
       "mesh_of_keys", [](const std::string& keys) { return tuple_of(mesh_of_keys(keys)); }, "keys"_a,
       "Points, cells, node sets and element sets of a table [mesh].");
 
@@ -304,11 +315,10 @@ void add_answers(py::module_& m) {
       .def(
           "gradient",
           [](const Answer& answer, const py::object& displacements,
-             const std::map<std::string, Vector>& reactions, bool points) {
-            if (points) answer.require_loads_without_shape();
-            return answer.derivatives().gradient(displacements, reactions, points);
+             const std::map<std::string, Vector>& reactions, bool materials, bool points) {
+            return answer.gradient(displacements, reactions, {.parameters = materials, .points = points});
           },
-          "displacements"_a, "reactions"_a, "points"_a,
+          "displacements"_a, "reactions"_a, "materials"_a, "points"_a,
           "The derivatives of a scalar by everything; see sandglass.Solution.")
       .def(
           "sensitivity",

@@ -58,6 +58,13 @@ std::string Arguments::text(const char* name) const {
   return text_of(name, "a text", value(name));
 }
 
+std::string Arguments::path(const char* name) const {
+  const py::object given = value(name);
+  const auto text = py::reinterpret_steal<py::object>(PyOS_FSPath(given.ptr()));
+  if (!text) refuse(name, "a path", given);
+  return text_of(name, "a path", text);
+}
+
 double Arguments::number(const char* name) const {
   const py::object given = value(name);
   if (PyBool_Check(given.ptr()) != 0 || PyUnicode_Check(given.ptr()) != 0) refuse(name, "a number", given);

@@ -15,6 +15,7 @@ class Arguments {
   explicit Arguments(pybind11::dict given) : given_(std::move(given)) {}
 
   std::string text(const char* name) const;
+  std::string path(const char* name) const;
   double number(const char* name) const;
   int integer(const char* name) const;
   bool flag(const char* name) const;

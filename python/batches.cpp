@@ -95,6 +95,12 @@ void add_batches(py::module_& m) {
           },
           "factors"_a, "Factors of all moduli.")
       .def(
+          "set_parameters",
+          [](AnyBatch& self, const std::vector<std::map<std::string, std::vector<double>>>& materials) {
+            with(self, [&](auto& batch) { batch.set_parameters(materials); });
+          },
+          "materials"_a, py::call_guard<py::gil_scoped_release>(), "Parameters of laws.")
+      .def(
           "impose",
           [](AnyBatch& self, const Doubles& factors) {
             for_each_body(self, factors, [](auto& batch, std::size_t b, double f) { batch.impose(b, f); });

@@ -103,6 +103,8 @@ std::string choose_method(const Arguments& given, Watch& watch) {
                 .threads = thread_count(given),
                 .all = given.flag("all")};
   demand.against = given.optional("against", &Arguments::text).value_or("");
+  if (!given.value("against").is_none() && demand.against != "golden" && demand.against != "truth")
+    throw InputError("against = '" + demand.against + "' must be 'golden', 'truth' or None");
   if (const auto budget = given.optional("budget", &Arguments::text))
     demand.budget = parse_time("budget", *budget);
   const std::string name = given.text("case"), output = given.text("output");

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "copied.hpp"
+#include "solve/law_parameters.hpp"
 
 namespace py = pybind11;
 
@@ -19,7 +20,56 @@ void require_finite(const char* argument, const std::string& name, double value)
   if (!std::isfinite(value)) throw InputError(fmt::format("{}: '{}' must be finite", argument, name));
 }
 
+/// The arrays of `sg.Gradient`; None for those that the answer does not have.
+py::dict named(const Gradient& found, const Materials& materials) {
+  const auto& [parameters, scales] = found.by_elements;
+  py::list laws;
+  for (std::size_t m = 0; m < parameters.size(); ++m) {
+    const auto names = parameter_names(materials.list[m].law);
+    py::dict own;
+    for (std::size_t k = 0; k < names.size(); ++k) own[py::str(names[k])] = parameters[m][k];
+    laws.append(own);
+  }
+  const auto array = [](const NodalField& f) { return f.empty() ? py::none() : py::object(field(f)); };
+  const bool motion = !found.velocities.empty();
+  py::dict all;
+  all["materials"] = laws.empty() ? py::object(py::none()) : py::tuple(laws);
+  all["stiffness"] = numbers(scales);
+  all["forces"] = field(found.forces);
+  all["imposed"] = field(found.imposed);
+  all["points"] = array(found.points);
+  all["velocities"] = array(found.velocities);
+  all["damping"] = motion ? py::object(py::float_(found.damping)) : py::none();
+  return all;
+}
+
 }  // namespace
+
+py::dict gradient(const Model& model, const TakenSteps& steps, const std::vector<Frame>& frames,
+                  const py::object& displacements, const Wanted& wanted) {
+  require_differentiable_motion(model);
+  const std::size_t nodes = model.scene().mesh.points.size();
+  std::map<std::size_t, NodalField> of_u;
+  std::size_t last = 0;
+  if (!displacements.is_none()) {
+    const py::array given = py::array::ensure(displacements);
+    if (!given) throw py::error_already_set();
+    if (given.ndim() != 3 || given.shape(0) != static_cast<py::ssize_t>(frames.size())) {
+      throw InputError(fmt::format("displacement must have the shape ({}, {}, 3), but has {}", frames.size(),
+                                   nodes, py::str(given.attr("shape")).cast<std::string>()));
+    }
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      NodalField of_frame = nodal_field("displacement", given[py::int_(k)], nodes);
+      if (std::ranges::all_of(of_frame, [](const Vector& row) { return row == Vector{}; })) continue;
+      of_u[steps.until(frames[k].time)] = std::move(of_frame);
+      last = k;
+    }
+  }
+  const py::gil_scoped_release others;
+  const Gradient found = gradient_of_motion(model, steps.all(), of_u, frames[last].u, wanted);
+  const py::gil_scoped_acquire again;
+  return named(found, model.scene().materials);
+}
 
 NodalField nodal_field(const char* name, const py::object& given, std::size_t nodes) {
   if (given.is_none()) return {};
@@ -55,28 +105,14 @@ auto Derivatives::with_tangent(const Use& use) {
 }
 
 py::dict Derivatives::gradient(const py::object& displacements,
-                               const std::map<std::string, Vector>& reactions, bool points) {
+                               const std::map<std::string, Vector>& reactions, const Wanted& wanted) {
   const std::size_t nodes = scene().mesh.points.size();
   NodalField of_u = nodal_field("displacement", displacements, nodes);
   of_u.resize(nodes);
   const NodalField of_R = of_reactions(reactions);
-  const Gradient found = with_tangent([&](StaticTangent& tangent) {
-    return sandglass::gradient(tangent, of_u, of_R, points ? Shape::varies : Shape::constant);
-  });
-  py::list materials;
-  for (std::size_t m = 0; m < found.parameters.size(); ++m) {
-    const auto names = parameter_names(scene().materials.list[m].law);
-    py::dict own;
-    for (std::size_t k = 0; k < names.size(); ++k) own[py::str(names[k])] = found.parameters[m][k];
-    materials.append(own);
-  }
-  py::dict all;
-  all["materials"] = py::tuple(materials);
-  all["stiffness"] = numbers(found.scales);
-  all["forces"] = field(found.forces);
-  all["imposed"] = field(found.imposed);
-  all["points"] = points ? py::object(field(found.points)) : py::none();
-  return all;
+  const Gradient found =
+      with_tangent([&](StaticTangent& tangent) { return sandglass::gradient(tangent, of_u, of_R, wanted); });
+  return named(found, scene().materials);
 }
 
 py::array Derivatives::sensitivity(const std::vector<std::map<std::string, double>>& materials,

@@ -1,8 +1,7 @@
-#include <pybind11/stl/filesystem.h>
-
 #include <limits>
 
 #include "answer.hpp"
+#include "arguments.hpp"
 #include "batches.hpp"
 #include "commands.hpp"
 #include "commands/execution_options.hpp"
@@ -61,6 +60,15 @@ py::array displacements(const py::object& self) {
 }
 
 using Arrays = std::map<std::string, py::object>;
+
+/// A dict from names to arrays.
+Arrays arrays(const char* name, const py::object& given) {
+  try {
+    return given.cast<Arrays>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(std::string(name) + " must be a dict from names to arrays");
+  }
+}
 
 /// Anything that NumPy takes for an array.
 py::array array_of(const std::string& name, const py::object& object) {
@@ -130,7 +138,16 @@ std::map<std::string, std::vector<int>> sets_of(const char* kind, const Arrays& 
   return sets;
 }
 
-void move(AnySimulation& self, const std::string& set, const Doubles& displacement) {
+/// The arguments of a method, of which one has this name.
+Arguments named(const char* name, const py::object& value) {
+  py::dict given;
+  given[name] = value;
+  return Arguments(given);
+}
+
+void move(AnySimulation& self, const py::object& set_name, const py::object& given) {
+  const std::string set = named("set", set_name).text("set");
+  const Doubles displacement = real("displacement", given);
   self.with([&](auto& simulation) {
     if (displacement.ndim() == 1 && displacement.size() == 3) {
       simulation.move(set, Vector{displacement.at(0), displacement.at(1), displacement.at(2)});
@@ -140,29 +157,42 @@ void move(AnySimulation& self, const std::string& set, const Doubles& displaceme
   });
 }
 
-SimulationSettings settings(std::optional<std::string> method, std::optional<double> kappa,
-                            std::optional<double> damping, double step_fraction, int threads) {
+/// Precision and settings from keywords; the first throws TypeError for a keyword that is none.
+Arguments with_defaults(const py::kwargs& given) {
+  using namespace pybind11::literals;
+  py::dict all("precision"_a = "double", "method"_a = py::none(), "kappa"_a = py::none(),
+               "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1);
+  for (const auto& [name, value] : given) {
+    if (!all.contains(name)) {
+      throw py::type_error(py::str(name).cast<std::string>() + " is no setting of a simulation; allowed: " +
+                           py::str(", ").attr("join")(all).cast<std::string>());
+    }
+    all[name] = value;
+  }
+  return Arguments(all);
+}
+
+SimulationSettings settings(const Arguments& given) {
+  const int threads = given.integer("threads");
   require_count("threads", threads, 1024);
-  return {std::move(method), kappa, damping, step_fraction, threads};
+  return {given.optional("method", &Arguments::text), given.optional("kappa", &Arguments::number),
+          given.optional("damping", &Arguments::number), given.number("step_fraction"), threads};
 }
 
-using Path = std::filesystem::path;
-using Text = std::optional<std::string>;
-using Number = std::optional<double>;
-
-std::unique_ptr<AnySimulation> of_file(const Path& case_file, const std::string& precision,
-                                       const Text& method, Number kappa, Number damping, double step_fraction,
-                                       int threads) {
-  return std::make_unique<AnySimulation>(precision, case_file,
-                                         settings(method, kappa, damping, step_fraction, threads));
+std::unique_ptr<AnySimulation> of_file(const py::object& case_file, const py::kwargs& keywords) {
+  const std::filesystem::path file = named("case", case_file).path("case");
+  const Arguments given = with_defaults(keywords);
+  return std::make_unique<AnySimulation>(given.text("precision"), file, settings(given));
 }
 
-std::unique_ptr<AnySimulation> of_mesh(const py::object& points, const py::object& cells, const Arrays& sets,
-                                       const std::string& case_text, const std::string& precision,
-                                       const Text& method, Number kappa, Number damping, double step_fraction,
-                                       int threads, const Arrays& element_sets) {
-  return std::make_unique<AnySimulation>(precision, mesh_arrays(points, cells, sets, element_sets), case_text,
-                                         settings(method, kappa, damping, step_fraction, threads));
+std::unique_ptr<AnySimulation> of_mesh(const py::object& points, const py::object& cells,
+                                       const py::object& sets, const py::object& case_text,
+                                       const py::object& element_sets, const py::kwargs& keywords) {
+  const Arguments given = with_defaults(keywords);
+  return std::make_unique<AnySimulation>(
+      given.text("precision"),
+      mesh_arrays(points, cells, arrays("sets", sets), arrays("element_sets", element_sets)),
+      named("case_text", case_text).text("case_text"), settings(given));
 }
 
 constexpr const char* about_simulation =
@@ -174,7 +204,8 @@ constexpr const char* about_simulation =
     simulation.advance(1 / 60)
 
 The case file is one for `sandglass run`; the body starts undeformed, at rest or with the case's initial velocities.
-`method`, `kappa` and `damping` (1/s) override the case's; steps are at most `step_fraction` of the stable step. Arrays
+Keywords: `precision`, "double" or "float"; `method`, `kappa` and `damping` (1/s) override the case's; steps are at most
+`step_fraction` (0.9) of the stable step; `threads` (1). Arrays
 are read-only views of the simulation's own: they show its current state and keep it alive. Only one thread may use it
 at a time; `advance` releases the GIL.)";
 
@@ -209,26 +240,31 @@ PYBIND11_MODULE(_sandglass, m) {
   add_batches(m);
 
   py::class_<AnySimulation>(m, "Simulation", about_simulation)
-      .def(py::init(&of_file), "case"_a, py::kw_only(), "precision"_a = "double", "method"_a = py::none(),
-           "kappa"_a = py::none(), "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1)
+      .def(py::init(&of_file), "case"_a)
       .def_static("of_mesh", &of_mesh, about_mesh, "points"_a, "cells"_a, "sets"_a, "case_text"_a,
-                  py::kw_only(), "precision"_a = "double", "method"_a = py::none(), "kappa"_a = py::none(),
-                  "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1,
-                  "element_sets"_a = py::dict())
+                  py::kw_only(), "element_sets"_a = py::dict())
       .def("move", &move, "set"_a, "displacement"_a,
            "Sets the position of the driven nodes of a set at the end of the next `advance`: one "
            "displacement (m) for all of them, or one row for each node of `nodes(set)`. Components "
            "that the case leaves free stay free.")
       .def(
-          "impose", [](AnySimulation& self, double factor) { self.with([&](auto& s) { s.impose(factor); }); },
+          "impose",
+          [](AnySimulation& self, const py::object& given) {
+            const double factor = named("factor", given).number("factor");
+            self.with([&](auto& s) { s.impose(factor); });
+          },
           "factor"_a,
           "Sets the position of all driven nodes at the end of the next `advance`: the case's "
           "displacements at a load factor, which is 1 at the end of the loading curve. The case's "
           "forces reach the same factor.")
       .def(
           "advance",
-          [](AnySimulation& self, double seconds) { self.with([&](auto& s) { s.advance(seconds); }); },
-          "seconds"_a, py::call_guard<py::gil_scoped_release>(),
+          [](AnySimulation& self, const py::object& given) {
+            const double seconds = named("seconds", given).number("seconds");
+            const py::gil_scoped_release others;
+            self.with([&](auto& s) { s.advance(seconds); });
+          },
+          "seconds"_a,
           "Advances in time, in equal steps of at most `step_size`; driven nodes and forces change "
           "linearly to their new values. Raises ComputationError, which names the time and the elements, if "
           "elements are inverted or no longer finite; the body is then back in its last state that was "
@@ -240,14 +276,35 @@ PYBIND11_MODULE(_sandglass, m) {
           "stops it there; the time stays. Returns the number of evaluations of the internal forces. "
           "Raises ComputationError if no equilibrium is found.")
       .def(
+          "save_checkpoint",
+          [](AnySimulation& self, const py::object& given) {
+            const std::string file = named("file", given).path("file");
+            self.with([&](const auto& s) { s.save(file); });
+          },
+          "file"_a,
+          "Writes the state to a file, from which `resume` goes on in another process. The file is replaced "
+          "as a whole or not at all. Raises InputError and ComputationError if that fails.")
+      .def(
+          "resume",
+          [](AnySimulation& self, const py::object& given) {
+            const std::string file = named("file", given).path("file");
+            self.with([&](auto& s) { s.resume(file); });
+          },
+          "file"_a,
+          "Takes the state that `save_checkpoint` of a simulation of the same case, mesh and settings wrote; "
+          "from there it moves with the same bits. Raises InputError for a damaged file, and for that of "
+          "another simulation, with the differences.")
+      .def(
           "reaction",
-          [](AnySimulation& self, const std::string& set) {
+          [](AnySimulation& self, const py::object& given) {
+            const std::string set = named("set", given).text("set");
             return py::array_t<double>(py::cast(self.with([&](const auto& s) { return s.reaction(set); })));
           },
           "set"_a, "The force (N) that holds or drives a set of nodes.")
       .def(
           "nodes",
-          [](const py::object& self, const std::string& set) {
+          [](const py::object& self, const py::object& given) {
+            const std::string set = named("set", given).text("set");
             return view_of<int, 1>(self, [&](const auto& s) { return s.nodes(set); });
           },
           "set"_a, "The nodes of a set, sorted.")

@@ -83,6 +83,68 @@ def test_targets_and_factors_come_in_several_shapes():
     assert np.array_equal(found[:, -1][:, head], twisted[:, -1])
 
 
+LAWS = [n for n, c in sg.tables.CLASSES.items() if c._declared["table"] == "material"]
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_bodies_have_parameters_of_their_own(name):
+    """Of every law that batches take; each parameter differs between bodies. See above for why
+    there are many `advance`s, and for the rounding."""
+    cls = getattr(sg, name)
+    keys = [k for k in cls._keys.values() if k["type"] == "number" and k["count"] == 1]
+    keys = [k for k in keys if k["name"] != "density"]
+    if name.startswith("Viscoelastic") or "fibre_direction" in cls._keys:
+        directions = {"fibre_direction": (1, 0, 1)} if "fibre_direction" in cls._keys else {}
+        sample = {k["name"]: 0.3 for k in keys}
+        with pytest.raises(sg.InputError, match="a batch takes isotropic elastic laws"):
+            body(law=cls(density=1000.0, **directions, **sample)).batch(2)
+        return
+    parameters = {}
+    for n, key in enumerate(keys):
+        pressure = 1e4 if "bulk" in key["name"] else 1e3
+        value = 0.4 if key["name"] == "poisson_ratio" else pressure if key["unit"] == "Pa" else 3.0
+        parameters[key["name"]] = value * (1 + 0.02 * (n + 1) * np.linspace(0, 1, BODIES))
+    laws = [cls(density=1000.0, **{k: v[b] for k, v in parameters.items()}) for b in range(BODIES)]
+    batch = body(law=laws[0]).batch(BODIES)
+    batch.set_parameters(parameters)
+    steps = int(np.ceil(1.2 * SECONDS / batch.step_size))
+    paths = HEAD[:, None, :] * np.linspace(0, 1, steps + 1)[1:][None, :, None]
+    found = batch.run(SECONDS, steps, driven={"head": paths})
+    for b in range(BODIES):
+        alone = body(law=laws[b]).simulation()
+        for k in range(steps):
+            alone.move("head", paths[b, k])
+            alone.advance(SECONDS / steps)
+        u = alone.displacements[alone.rows]
+        assert np.abs(found[b, -1] - u).max() < 24 * 2.0**-53 * steps**2 * 0.02
+    same = body(law=laws[0]).batch(BODIES).run(SECONDS, steps, driven={"head": paths})
+    assert np.abs(same[1:] - found[1:]).max() > 1e-6
+    again = body(law=laws[0]).batch(BODIES)
+    again = again.run(SECONDS, steps, driven={"head": paths}, materials=[parameters])
+    assert np.array_equal(again, found)
+
+
+def test_a_law_with_numbers_for_elements_takes_numbers_for_bodies_and_elements():
+    """(bodies, elements), or (bodies,) for all elements of the law."""
+    law = {"poisson_ratio": 0.4, "density": 1000.0}
+    moduli = 3000.0 * (1 + np.arange(3 * 16).reshape(3, 16) / 48)
+    course = np.linspace(0, 1, 21)[1:, None]  # each frame takes one step
+
+    def run(law, bodies=slice(3), **given):
+        batch = body(law=law).batch(len(HEAD[bodies]))
+        return batch.run(0.02, 20, driven={"head": HEAD[bodies, None] * course}, **given)
+
+    varying = sg.NeoHookean(young_modulus=moduli[0], **law)
+    one = run(sg.NeoHookean(young_modulus=3000.0, **law), materials={"young_modulus": moduli[:, 0]})
+    whole = run(varying, materials={"young_modulus": moduli[:, 0]})
+    assert np.abs(whole - one).max() < 1e-12
+    each = run(varying, materials=[{"young_modulus": moduli}])
+    for b in range(3):
+        alone = run(sg.NeoHookean(young_modulus=moduli[b], **law), slice(b, b + 1))
+        assert np.abs(each[b] - alone[0]).max() < 1e-12
+    assert np.abs(each[1] - whole[1]).max() > 1e-5
+
+
 def test_what_a_batch_cannot_is_refused_by_name():
     for made, words in [
         (body(sg.Pressure(set="side", value=1.0)), r"remove \[\[pressure\]\]"),
@@ -116,7 +178,29 @@ def test_what_a_batch_cannot_is_refused_by_name():
         (lambda b: b.move("head", "far"), "displacements must be an array of numbers"),
         (lambda b: b.move("head", np.ones((4, 3))), r"\(3,\) or \(3, 3\) or \(3, 9, 3\)"),
         (lambda b: b.impose([[1], [2, 3]]), "factors must be an array of numbers"),
-        (lambda b: b.reaction(1), "set"),
+        (lambda b: b.reaction(1), "set must be a text, but is a int"),
+        (
+            lambda b: b.advance("long"),
+            "seconds must be an array of numbers|seconds must be a number",
+        ),
+        (lambda b: b.set_parameters(3), "materials must be a list of dicts, but is a int"),
+        (lambda b: b.set_parameters([3]), r"materials\[0\] must be a dict, but is a int"),
+        (
+            lambda b: b.set_parameters({"young_modulus": [1, 2]}),
+            r"materials\[0\]: young_modulus must have the shape \(3,\), but has \(2,\)",
+        ),
+        (
+            lambda b: b.set_parameters([{}, {}]),
+            "materials: 2 were given; it must be one for each of the 1 of the body",
+        ),
+        (
+            lambda b: b.set_parameters({"poisson_ratio": [0.4, 0.5, 0.4]}),
+            r"material 0, body 1: poisson_ratio = 0.5 must be in \(-1, 0.5\)",
+        ),
+        (
+            lambda b: b.set_parameters({"mu": 1}),
+            "'mu' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson_ratio",
+        ),
         (lambda b: body().batch(0), r"bodies = 0 must be in \[1, 1000000\]"),
         (lambda b: body().batch(2.0), "bodies must be an integer"),
         (lambda b: body().batch(2, precision="half"), "'half' must be 'double' or 'float'"),

@@ -281,25 +281,51 @@ def test_positions_of_nodes(method):
         assert (found * along).sum() == pytest.approx(own, rel=1e-6)
 
 
+TURN = {"set": "head", "axis": "z", "angle": 25, "displacement": (0, 0, 0.01)}
+
+
+@pytest.mark.parametrize("method", ["tl-perturbation", "tl-mean-dilatation"])
 @pytest.mark.parametrize(
-    "load, name",
+    "loads",
     [
-        (sg.Gravity(value=(0, 0, -9.81)), "gravity"),
-        (sg.Force(set="head", total=(0.3, 0.2, 0.5)), "faces"),
-        (sg.Support(set="head", stiffness=1e5), "support"),
+        [sg.Gravity(value=(1, -1, 5))],
+        [sg.Gravity(value=(0, -1, 5)), sg.Mass(set="side", total=0.05)],
+        [sg.Force(set="side", total=(0.3, 0.2, 0.5), moment=(0.01, 0, 0.02))],
+        [sg.Force(set="side", total=(0.3, 0.2, 0.5), times=[0, 1], factors=[0, 0.5])],
+        [sg.Force(set="side", total=(0.2, 0, 0)), sg.Support(set="head", stiffness=1e5)],
+        [sg.Force(set="side", total=(0.2, 0, 0))]
+        + [sg.Support(set="head", stiffness=1e5, only_normal=True)],
+        [sg.Rotation(**TURN)],
+        [sg.Rotation(**TURN, center=(0.03, 0.02, 0)), sg.Gravity(value=(0, -2, 0))],
     ],
+    ids=lambda loads: " ".join(f"{type(each).__name__}{len(each._values)}" for each in loads),
 )
-def test_loads_that_change_with_the_points_are_refused(load, name):
-    """Weights and areas depend on the positions of nodes, which the derivative lacks."""
-    loads = [sg.Displacement(set="base", value=(0, 0, 0)), load]
-    law = sg.NeoHookean(young_modulus=3e4, poisson_ratio=0.45, density=1000)
-    sets = {"base": {"z": [0, 0]}, "head": {"z": [0.1, 0.1]}}
-    mesh = sg.Box(size=(0.04, 0.04, 0.1), elements=(2, 2, 4))
-    solution = sg.Body(mesh, law, loads, sets=sets).solve()
-    weights = np.ones_like(solution.points)
-    assert solution.gradient(weights).points is None
-    with pytest.raises(sg.InputError, match=f"points: .*{name}"):
-        solution.gradient(weights, points=True)
+def test_loads_change_with_the_positions_of_nodes(loads, method):
+    """Volumes, areas, normals, centroids and arms; of displacements and of reactions. Weight pulls
+    upwards: bodies that topple have other answers nearby, which differences would find."""
+    law = sg.NeoHookean(young_modulus=6e3, poisson_ratio=0.4, density=1000)
+    grid = sg.Body(BOX, law, sets=SETS).mesh
+    rng = np.random.default_rng(8)
+    points = grid.points + 0.004 * rng.standard_normal(grid.points.shape)
+    places = {"base": (2, 0), "head": (2, 0.2), "side": (0, 0.1)}
+    sets = {n: np.flatnonzero(np.isclose(grid.points[:, i], x)) for n, (i, x) in places.items()}
+    fixed = [sg.Displacement(set="base", value=(0, 0, 0)), sg.Relaxation(tolerance=1e-12)]
+
+    def made(X):
+        return sg.Body(sg.Mesh(X, grid.cells, sets), law, [*fixed, *loads])
+
+    solution = made(points).solve(name=method)
+    of_u, of_R = rng.standard_normal(points.shape), rng.standard_normal(3) * 1e-2
+
+    def J(X):
+        answer = made(X).solve(name=method)
+        return (of_u * answer.displacement).sum() + of_R @ answer.reactions["base"]
+
+    found = solution.gradient(of_u, {"base": of_R}, points=True).points
+    for _ in range(3):
+        along = rng.standard_normal(points.shape)
+        own = difference(lambda x: J(points + x * along), 1e-5)
+        assert (found * along).sum() == pytest.approx(own, rel=1e-6)
 
 
 def test_wrong_input_and_answers_without_derivatives():
@@ -325,6 +351,14 @@ def test_wrong_input_and_answers_without_derivatives():
             sg.InputError,
             "reactions: 'head' must be finite",
         ),
+        (
+            {"reactions": {"head": (1, 2)}},
+            sg.InputError,
+            r"reactions: 'head' must have the shape \(3,\), but has \(2,\)",
+        ),
+        ({"reactions": [1, 2, 3]}, TypeError, "reactions must be a dict from sets to arrays"),
+        ({"reactions": {3: (1, 2, 3)}}, TypeError, "a name in reactions must be a text"),
+        ({"points": "all"}, TypeError, "points must be True or False, but is a str"),
     ]:
         with pytest.raises(error, match=words):
             solution.gradient(**arguments)
@@ -334,12 +368,19 @@ def test_wrong_input_and_answers_without_derivatives():
             {"materials": [{}, {"mu": 1.0}]},
             "'mu' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson",
         ),
-        ({"materials": [{}, {"young_modulus": np.nan}]}, "'young_modulus' must be finite"),
+        ({"materials": [{}, {"young_modulus": np.nan}]}, "young_modulus must be finite"),
         ({"forces": np.zeros(3)}, "forces must have the shape"),
         ({"imposed": np.zeros((1, 3))}, "imposed must have the shape"),
     ]:
         with pytest.raises(sg.InputError, match=words):
             solution.sensitivity(**arguments)
+    for changes, words in [
+        ("soft", "materials must be a list of dicts, but is a str"),
+        ([{}, 3], r"materials\[1\] must be a dict, but is a int"),
+        ([{}, {"young_modulus": "soft"}], r"materials\[1\]: young_modulus must be an array of num"),
+    ]:
+        with pytest.raises(TypeError, match=words):
+            solution.sensitivity(changes)
     nothing = solution.gradient(np.zeros((n, 3)))
     assert not nothing.forces.any() and nothing.materials[0]["young_modulus"] == 0
     wall = sg.Obstacle(name="wall", set="side", shape="plane", point=(0.2, 0, 0), normal=(-1, 0, 0))
@@ -350,7 +391,6 @@ def test_wrong_input_and_answers_without_derivatives():
             r"\[\[pressure\]\] is not supported, for .*potential",
         ),
         (wall, {}, r"\[\[obstacle\]\] is not supported"),
-        (sg.Dynamics(duration=0.01), {}, "the answer is a motion; allowed: a static answer"),
         (
             sg.Relaxation(tolerance=1e-4),
             {"precision": "float"},
@@ -383,6 +423,19 @@ def test_an_unstable_answer_has_no_derivatives():
     assert column(1e-4).solve().gradient(sideways).forces[:, 0].sum() > 0
     with pytest.raises(sg.ComputationError, match="unstable|not solved"):
         column(0.01).solve().gradient(sideways)
+
+
+def test_derivatives_of_large_and_small_numbers():
+    """A gradient is linear in its weights, whose squares need not be numbers."""
+    solution = body("NeoHookean", [sample("NeoHookean", np.random.default_rng(k)) for k in (1, 2)])
+    solution = solution.solve()
+    weights = np.random.default_rng(3).standard_normal(solution.points.shape)
+    one = solution.gradient(weights, {"head": (0.01, 0, 0)})
+    for size in (1e-160, 1e160, 1e250):
+        found = solution.gradient(size * weights, {"head": (0.01 * size, 0, 0)})
+        for name in ("forces", "imposed", "stiffness"):
+            scaled, own = getattr(found, name) / size, getattr(one, name)
+            assert np.abs(scaled - own).max() < 1e-8 * np.abs(own).max(), (size, name)
 
 
 def test_the_readme_identifies_two_moduli():

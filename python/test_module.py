@@ -148,6 +148,74 @@ def test_a_copy_is_a_snapshot(body):
     assert snapshot.displacements.base is snapshot
 
 
+@pytest.mark.parametrize("method", ["tl-perturbation", "tl-adaptive", "ul-perturbation"])
+@pytest.mark.parametrize("precision", ["double", "float"])
+def test_a_saved_simulation_is_resumed_with_the_same_bits(case, tmp_path, precision, method):
+    """In the middle of a path, between two checks of the elements, by a new simulation."""
+    file = tmp_path / "state.checkpoint"
+    body = sandglass.Simulation(case, precision=precision, method=method)
+    body.move("head", END)
+    body.advance(0.05)
+    body.advance(3.3 * body.step_size)
+    body.move("head", 0.2 * END)
+    body.impose(0.4)
+    body.save_checkpoint(file)
+    kept = body.displacements.copy()
+    other = sandglass.Simulation(case, precision=precision, method=method)
+    view = other.displacements
+    other.resume(str(file))
+    assert other.time == body.time and other.step_size == body.step_size
+    assert np.array_equal(view, kept)  # which shows the resumed state
+    for each in (body, other):
+        each.advance(0.1)
+    assert np.array_equal(view, body.displacements) and not np.array_equal(view, kept)
+    assert np.array_equal(other.reaction("head"), body.reaction("head"))
+
+
+def test_a_checkpoint_of_another_simulation_is_refused(case, body, tmp_path):
+    file = tmp_path / "state.checkpoint"
+    body.save_checkpoint(file)
+    for words, settings in [
+        ("precision: 'double' in the checkpoint, 'float'", {"precision": "float"}),
+        ("method: 'tl-perturbation' in the checkpoint", {"method": "tl-full"}),
+        ("damping: ", {"damping": 7.5}),
+        ("steps: '0.9 of the stable one", {"step_fraction": 0.5}),
+    ]:
+        other = sandglass.Simulation(case, **settings)
+        with pytest.raises(sandglass.InputError, match=words):
+            other.resume(file)
+        assert other.time == 0
+    (tmp_path / "damaged").write_bytes(file.read_bytes()[:-1] + b"?")
+    for wrong in ("damaged", "nowhere"):
+        with pytest.raises(sandglass.InputError, match=wrong):
+            body.resume(tmp_path / wrong)
+    with pytest.raises(TypeError, match="file must be a path, but is a float"):
+        body.save_checkpoint(1.5)
+
+
+def test_wrong_arguments_are_named(case, body):
+    for use, words in [
+        (lambda: sandglass.Simulation(3), "case must be a path, but is a int"),
+        (
+            lambda: sandglass.Simulation(case, threads=1.5),
+            "threads must be an integer, but is a fl",
+        ),
+        (lambda: sandglass.Simulation(case, kappa="much"), "kappa must be a number, but is a str"),
+        (
+            lambda: sandglass.Simulation(case, step=1),
+            "step is no setting of a simulation; allowed: p",
+        ),
+        (lambda: body.advance("long"), "seconds must be a number, but is a str"),
+        (lambda: body.impose(None), "factor must be a number, but is a NoneType"),
+        (lambda: body.move(3, END), "set must be a text, but is a int"),
+        (lambda: body.move("head", "far"), "displacement must be an array of numbers"),
+        (lambda: body.reaction(None), "set must be a text, but is a NoneType"),
+        (lambda: body.nodes(2), "set must be a text, but is a int"),
+    ]:
+        with pytest.raises(TypeError, match=words):
+            use()
+
+
 def test_impose_follows_the_case(case):
     body = sandglass.Simulation(case, damping=20.0)
     other = body.copy()
@@ -184,6 +252,17 @@ def test_errors_are_exceptions_with_the_solvers_words(case, body):
     body.move("head", [0, 0, -0.25])
     with pytest.raises(sandglass.ComputationError, match="det F must be positive"):
         body.advance(0.1)
+
+
+@pytest.mark.parametrize("far", [1e3, 1e60, 1e300])
+def test_no_advance_ends_with_nan(body, far):
+    """However few steps it takes: displacements overflow long before the 20th, the first check."""
+    body.move("head", [far, 0, 0])
+    with pytest.raises(sandglass.ComputationError, match="no longer finite"):
+        for _ in range(10):
+            body.advance(body.step_size)
+            assert np.isfinite(body.displacements).all()
+    assert body.time == 0 and not np.array(body.displacements).any()
 
 
 def test_other_threads_run_while_it_steps_and_cannot_step_it_too(body):

@@ -67,6 +67,15 @@ def test_it_is_the_answer_of_the_program(more, tmp_path):
     assert [text.replace("made", "own") for text in scored] == scored[1:] * 2
 
 
+def test_an_accuracy_is_read_as_on_the_command_line():
+    """A share or a text in percent; case files, and thus `sg.Method`, have numbers alone."""
+    made = body(sg.Method(name="tl-adaptive"))
+    one, other = made.solve(accuracy="2%"), made.solve(accuracy=0.02)
+    assert np.array_equal(one.displacement, other.displacement)
+    with pytest.raises(sg.InputError, match="accuracy = '200%' must be a share in"):
+        made.solve(accuracy="200%")
+
+
 def test_arrays_have_their_shapes_and_are_read_only(solution):
     n, m = 45, 16
     shapes = {"displacement": (n, 3), "stress": (m, 3, 3), "volume_ratio": (m,)}

@@ -20,9 +20,11 @@ add_library(sandglass_scalar OBJECT)
 target_link_libraries(sandglass_scalar PRIVATE sandglass)
 precompile_headers(sandglass_scalar <assembly/kernels.hpp>)
 
-# The laws that kernels call, for a number type and its header.
+# The laws that kernels call, for a number type and its header; a further argument is the type of their parameters.
 function(add_called_law target number header name)
   set(NUMBER ${number})
+  set(VALUE double ${ARGN})
+  list(GET VALUE -1 VALUE)
   set(INCLUDE ${header})
   add_generated(${target} ${PROJECT_SOURCE_DIR}/solver/material/called_law_source.cpp.in called_law_${name}.cpp)
 endfunction()
@@ -30,6 +32,9 @@ add_called_law(sandglass_packed "Pack<double>" math/pack.hpp packed_double)
 add_called_law(sandglass_packed "Pack<float>" math/pack.hpp packed_float)
 add_called_law(sandglass_packed "double" math/scalar.hpp scalar_double)
 add_called_law(sandglass_packed "Dual<double>" math/dual.hpp dual)
+foreach(REAL double float)
+  add_called_law(sandglass_packed "Pack<${REAL}>" math/pack.hpp of_bodies_${REAL} "Pack<double, Pack<${REAL}>::width>")
+endforeach()
 
 foreach(REAL double float)
   set(NUMBER "Pack<${REAL}>")

@@ -1,13 +1,17 @@
 // Bodies in a batch move as each would alone.
 #include "sandglass/batch.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
+#include "assembly/method_entry.hpp"
 #include "solve/steady_step.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -17,16 +21,10 @@ constexpr int steps = 100;
 
 /// A block of two materials on a fixed foot, damped, with an initial velocity. Its head is driven, and a
 /// force with a load curve of its own pushes its side.
-std::string text_of(double stiffness, const std::string& law = "neo-hookean") {
-  const auto material = [&](double modulus) {
-    const std::string E = std::to_string(stiffness * modulus);
-    return "law = \"" + law + "\"\ndensity = 1000.0\n" +
-           (law == "neo-hookean" ? "young_modulus = " + E + "\npoisson_ratio = 0.45\n"
-                                 : "c1 = " + E + "\nc2 = " + E + "\nc3 = 0.0\nbulk_modulus = " + E + "0\n");
-  };
+std::string text_with(const std::array<std::string, 2>& materials) {
   return std::string(
              "[case]\nname = \"block\"\nrequirement = \"A block is moved.\"\nanswer = \"dynamic\"\n") +
-         "[[materials]]\nelements = \"low\"\n" + material(2000.0) + "[[materials]]\n" + material(1000.0) +
+         "[[materials]]\nelements = \"low\"\n" + materials[0] + "[[materials]]\n" + materials[1] +
          "[element_sets]\nlow = { z = [0.0, 0.1] }\n"
          "[sets]\nfoot = { z = [0.0, 0.0] }\nside = { x = [0.1, 0.1] }\nmiddle = { z = [0.1, 0.1] }\n"
          "[[displacement]]\nset = \"foot\"\nvalue = [0.0, 0.0, 0.0]\n"
@@ -36,6 +34,16 @@ std::string text_of(double stiffness, const std::string& law = "neo-hookean") {
          "[0.5, 1.5]\n"
          "[[velocity]]\nvalue = [0.0, 0.1, 0.0]\n"
          "[dynamics]\nduration = 0.2\ndamping = 3.0\n";
+}
+
+std::string text_of(double stiffness, const std::string& law = "neo-hookean") {
+  const auto material = [&](double modulus) {
+    const std::string E = std::to_string(stiffness * modulus);
+    return "law = \"" + law + "\"\ndensity = 1000.0\n" +
+           (law == "neo-hookean" ? "young_modulus = " + E + "\npoisson_ratio = 0.45\n"
+                                 : "c1 = " + E + "\nc2 = " + E + "\nc3 = 0.0\nbulk_modulus = " + E + "0\n");
+  };
+  return text_with({material(2000.0), material(1000.0)});
 }
 
 MeshArrays block(bool skewed) {
@@ -139,6 +147,143 @@ INSTANTIATE_TEST_SUITE_P(Methods, BatchTest,
                                            Setting{"tl-perturbation", true, "yeoh"},
                                            Setting{"tl-mean-dilatation", true, "neo-hookean"},
                                            Setting{"tl-mean-dilatation", false, "yeoh"}));
+
+/// The parameters of a law in a material of a body: those of the sample, each moved by its own share.
+template <class Law>
+std::map<std::string, double> parameters_of(std::size_t material, std::size_t body) {
+  std::map<std::string, double> all;
+  const double E = material == 0 ? 2000.0 : 1000.0;
+  double share = 0.01;
+  std::apply(
+      [&](const auto&... p) {
+        ((all[std::string(p.name)] = sample_value(p.name, p.unit, p.range, E, 0.45) *
+                                     (1.0 + (share += 0.005) * static_cast<double>(body % 5))),
+         ...);
+      },
+      Law::parameters());
+  return all;
+}
+
+/// The case of a body whose materials have this law.
+template <class Law>
+std::string text_of_body(std::size_t body) {
+  std::array<std::string, 2> materials;
+  for (std::size_t m = 0; m < 2; ++m) {
+    materials[m] = fmt::format("law = \"{}\"\ndensity = 1000.0\n", Law::name);
+    for (const auto& [name, value] : parameters_of<Law>(m, body))
+      materials[m] += fmt::format("{} = {}\n", name, value);
+  }
+  return text_with(materials);
+}
+
+/// The largest distance between bodies of a batch with their own parameters and simulations of each, over
+/// 0.03 m.
+template <class Real, class Law>
+double distance_with_parameters(bool skewed, const char* method) {
+  constexpr std::size_t bodies = native_width<Real> + 3;
+  const SimulationSettings settings{.method = method};
+  Batch<Real> batch(block(skewed), text_of_body<Law>(0), bodies, settings);
+  std::vector<std::map<std::string, std::vector<double>>> parameters(2);
+  std::vector<Simulation<Real>> alone;
+  double shortest = INFINITY;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    for (std::size_t m = 0; m < 2; ++m)
+      for (const auto& [name, value] : parameters_of<Law>(m, b)) parameters[m][name].push_back(value);
+    alone.emplace_back(block(skewed), text_of_body<Law>(b), settings);
+    shortest = std::min(shortest, alone.back().step_size());
+  }
+  const double of_case = batch.step_size();
+  batch.set_parameters(parameters);
+  const double longest = std::min(of_case, shortest / SteadyStep::first_share);
+  EXPECT_NEAR(batch.step_size(), longest, 1e-5 * longest);  // rounding of float
+  EXPECT_LT(step, shortest);
+  for (int n = 1; n <= steps; ++n) {
+    for (std::size_t b = 0; b < bodies; ++b) {
+      const double share = static_cast<double>(n) / steps;
+      batch.move(b, "head", {0.01 * share, 0.0, 0.01 * share});
+      alone[b].move("head", {0.01 * share, 0.0, 0.01 * share});
+      alone[b].advance(step);
+    }
+    batch.advance(step);
+  }
+  double apart = 0.0, others_apart = 0.0;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    const NodalView<Real> u = alone[b].displacements();
+    const auto rows = alone[b].row_of_node();
+    for (std::size_t node = 0; node < rows.size(); ++node) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double found = batch.displacement(b, node)[i];
+        apart = std::max(apart, std::abs(found - static_cast<double>(u[index(rows[node])][i])) / 0.03);
+        others_apart = std::max(others_apart, std::abs(found - batch.displacement(0, node)[i]) / 0.03);
+      }
+    }
+  }
+  EXPECT_GT(others_apart, 1e-4) << Law::name;  // what one set of numbers for all would miss
+  return apart;
+}
+
+template <class Law>
+class BatchOfLaw : public ::testing::Test {};
+
+/// The laws that batches take.
+template <class... Laws>
+auto isotropic(TypeList<Laws...> /*all*/) {
+  return Concatenated<TypeList<>, std::conditional_t<is_isotropic<Laws>, TypeList<Laws>, TypeList<>>...>{};
+}
+using IsotropicTypes = detail::AsTestTypes<decltype(isotropic(ElasticLaws{}))>::type;
+TYPED_TEST_SUITE(BatchOfLaw, IsotropicTypes, EntryName);
+
+// Tolerances as above. Bodies differ in every parameter of both materials.
+TYPED_TEST(BatchOfLaw, bodies_have_parameters_of_their_own) {
+  for (const MethodEntry& entry : methods()) {
+    if (entry.packed_double.assemble_batch == nullptr) continue;
+    const char* const method = entry.name.data();
+    for (const bool skewed : {false, true}) {
+      EXPECT_LT((distance_with_parameters<double, TypeParam>(skewed, method)),
+                24.0 * steps * steps * 0x1p-53);
+      EXPECT_LT((distance_with_parameters<float, TypeParam>(skewed, method)), 24.0 * steps * 0x1p-24);
+    }
+  }
+}
+
+// What is not given stays, and the numbers of the case give its bodies again.
+TEST(Batch, parameters_replace_those_of_the_case) {
+  Batch<double> batch(block(false), text_of(1.0), 3), other(block(false), text_of(1.0), 3);
+  const double of_case = batch.step_size();
+  using Parameters = std::vector<std::map<std::string, std::vector<double>>>;
+  batch.set_parameters(Parameters{{}, {{"young_modulus", {500.0, 600.0, 700.0}}}});
+  EXPECT_NEAR(batch.step_size(), of_case, 1e-12 * of_case);  // the first material is stiffer
+  batch.set_parameters(Parameters{{{"young_modulus", {2000.0, 8000.0, 100.0}}}, {}});
+  EXPECT_NEAR(batch.step_size(), of_case / SteadyStep::first_share / 2.0, 1e-12 * of_case);
+  batch.set_parameters(Parameters{{{"young_modulus", {2000.0, 2000.0, 2000.0}}},
+                                  {{"young_modulus", {1000.0, 1000.0, 1000.0}}}});
+  for (Batch<double>* each : {&batch, &other}) {
+    for (int n = 1; n <= 20; ++n) {
+      each->move(1, "head", {0.0, 0.0, 5e-4 * n});
+      each->advance(step);
+    }
+  }
+  for (std::size_t node = 0; node < 45; ++node) {
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(batch.displacement(1, node)[i], other.displacement(1, node)[i], 1e-12);
+  }
+  const auto refused = [&](const Parameters& given) {
+    return input_error([&] { batch.set_parameters(given); });
+  };
+  EXPECT_NE(refused({{}}).find("1 were given; it must be one for each of the 2"), std::string::npos);
+  EXPECT_EQ(
+      refused({{{"c1", {1.0, 2.0, 3.0}}}, {}}),
+      "material 0, body 0: 'c1' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson_ratio");
+  EXPECT_EQ(refused({{}, {{"young_modulus", {1.0, -2.0, 3.0}}}}),
+            "material 1, body 1: young_modulus = -2 must be in (0, inf)");
+  EXPECT_EQ(refused({{{"young_modulus", {1.0}}}, {}}),
+            "material 0: young_modulus has 1 values; it must be one for each of the 3 bodies");
+  Batch<double> yeoh(block(false), text_of(1.0, "yeoh"), 2);
+  EXPECT_NE(input_error([&] {
+              yeoh.set_parameters(Parameters{{{"c2", {1.0, -900.0}}}, {}});
+            }).find("material 0, body 1: c2 = -900 must be at least 0, or c2^2 less than"),
+            std::string::npos);
+}
 
 // Frames of many steps, each with a newly chosen step.
 TEST(Batch, driven_nodes_and_forces_go_straight) {

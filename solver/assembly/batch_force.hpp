@@ -17,9 +17,8 @@
 
 namespace sandglass {
 
-/// The elements of one mesh in as many bodies as `Number` has lanes, body l in lane l. Bodies share the
-/// constants of an element, which are read once, and a node's values stand side by side, so that nothing is
-/// gathered or transposed.
+/// The elements of one mesh in as many bodies as `Number` has lanes, body l in lane l. A node's values stand
+/// side by side, so that nothing is gathered or transposed.
 template <class Number>
 class BatchForce {
  public:
@@ -45,11 +44,30 @@ class BatchForce {
   virtual Extremes extremes(std::span<const Number> u) const = 0;
 };
 
+/// The law of a material, called.
+inline CalledLaw called_law(const Materials& materials, std::size_t material) {
+  return elastic_law(kernel_law(materials.list[material]));
+}
+
+/// The laws of the materials of several bodies, one in each lane.
+template <class Number>
+auto laws_of_bodies(std::span<const Materials> bodies) {
+  std::vector<CalledLawOf<Pack<double, Lanes<Number>::width>>> laws;
+  for (std::size_t m = 0; m < bodies.front().list.size(); ++m) {
+    std::vector<CalledLaw> own;
+    for (const Materials& materials : bodies) own.push_back(called_law(materials, m));
+    laws.emplace_back(std::span<const CalledLaw>(own));
+  }
+  return laws;
+}
+
 /// The loop of a time step, for kernels whose forces follow from displacements alone. The mesh has no
-/// material axes.
-template <class Method, class Law, class Number>
+/// material axes. An element has one set of constants for all bodies, which are read once, if `Constant` is a
+/// plain number, and one for each body if it is `Number`.
+template <class Method, class Law, class Number, class Constant>
 class BatchLoop final : public BatchForce<Number> {
   using Kernel = FormulationOf<Method, Law>;
+  using Called = FormulationOf<Method, CalledLaw>;
   using Element = typename Kernel::template Element<Number>;
   using Real = typename Lanes<Number>::Scalar;
   static constexpr std::size_t numbers = sizeof(Element) / sizeof(Number);
@@ -58,17 +76,22 @@ class BatchLoop final : public BatchForce<Number> {
                 !Kernel::remembers);
 
  public:
-  BatchLoop(const Mesh& mesh, const Materials& materials, const std::vector<Law>& laws,
+  /// `bodies` have the materials that all share, or those of each, as `Constant` demands.
+  BatchLoop(const Mesh& mesh, std::span<const Materials> bodies, std::vector<Law> laws,
             const HourglassSettings& settings)
-      : layout_(make_layout(mesh, 1, SpareRows::where_needed, materials.of_element)), laws_(laws) {
-    for (const Material& material : materials.list) densities_.push_back(material.density);
+      : layout_(make_layout(mesh, 1, SpareRows::where_needed, bodies.front().of_element)),
+        laws_(std::move(laws)) {
+    for (const Material& material : bodies.front().list) densities_.push_back(material.density);
     constants_.reserve(layout_.packs());
     for (const auto& group : layout_.groups) {
-      const CalledLaw law = elastic_law(kernel_law(materials.list[group.material]));
       for (std::size_t k = 0; k < group.packs; ++k) {
-        const auto element = element_block<FormulationOf<Method, CalledLaw>, Real>(
-            mesh, layout_, layout_.node_of_row, group.first_face + k, [&](int) { return law; }, settings);
-        constants_.push_back(std::bit_cast<std::array<Real, numbers>>(element));
+        auto& constants = constants_.emplace_back();
+        for (int lane = 0; lane < Lanes<Constant>::width; ++lane) {
+          const CalledLaw law = called_law(bodies[static_cast<std::size_t>(lane)], group.material);
+          const auto own = std::bit_cast<std::array<Real, numbers>>(element_block<Called, Real>(
+              mesh, layout_, layout_.node_of_row, group.first_face + k, [&](int) { return law; }, settings));
+          for (std::size_t n = 0; n < numbers; ++n) Lanes<Constant>::set(constants[n], lane, own[n]);
+        }
       }
     }
   }
@@ -138,9 +161,9 @@ class BatchLoop final : public BatchForce<Number> {
     return at_step(laws_[material], std::numeric_limits<double>::infinity());
   }
 
-  /// The constants of an element, the same in all lanes. An element consists of numbers alone; through a
+  /// The constants of an element in all lanes. An element consists of numbers alone; through a
   /// pointer, for GCC would copy the result of a bit_cast to the stack.
-  static Element in_all_lanes(const std::array<Real, numbers>& constants) {
+  static Element in_all_lanes(const std::array<Constant, numbers>& constants) {
     Element element;
     auto* const lanes = reinterpret_cast<Number*>(&element);
     for (std::size_t n = 0; n < numbers; ++n) lanes[n] = Number(constants[n]);
@@ -170,21 +193,27 @@ class BatchLoop final : public BatchForce<Number> {
   }
 
   Layout layout_;
-  std::vector<double> densities_;                     // kg/m^3, of each material
-  std::vector<Law> laws_;                             // of each material
-  std::vector<std::array<Real, numbers>> constants_;  // of each element, in the order of the loop
+  std::vector<double> densities_;                         // kg/m^3, of each material
+  std::vector<Law> laws_;                                 // of each material
+  std::vector<std::array<Constant, numbers>> constants_;  // of each element, in the order of the loop
 };
 
 template <class Method, class Number>
-std::unique_ptr<BatchForce<Number>> assemble_batch(const Mesh& mesh, const Materials& materials,
+std::unique_ptr<BatchForce<Number>> assemble_batch(const Mesh& mesh, std::span<const Materials> bodies,
                                                    const HourglassSettings& settings) {
   const auto with = [&]<class Form>(std::type_identity<Form>) -> std::unique_ptr<BatchForce<Number>> {
-    const KernelLaws laws = kernel_laws(materials);
-    if (const auto* known = std::get_if<std::vector<NeoHookean>>(&laws)) {
-      return std::make_unique<BatchLoop<Form, NeoHookean, Number>>(mesh, materials, *known, settings);
-    }
-    const auto& called = std::get<std::vector<CalledLaw>>(laws);
-    return std::make_unique<BatchLoop<Form, CalledLaw, Number>>(mesh, materials, called, settings);
+    const auto loop = [&]<class Constant, class Law>(std::type_identity<Constant>, std::vector<Law> laws) {
+      return std::make_unique<BatchLoop<Form, Law, Number, Constant>>(mesh, bodies, std::move(laws),
+                                                                      settings);
+    };
+    using Real = typename Lanes<Number>::Scalar;
+    using Shared = std::type_identity<Real>;
+    // Without a control they are geometry alone, the same for all bodies.
+    using Own = std::type_identity<std::conditional_t<Method::Hourglass::traits.active, Number, Real>>;
+    if (bodies.size() > 1) return loop(Own{}, laws_of_bodies<Number>(bodies));
+    const KernelLaws laws = kernel_laws(bodies.front());
+    if (const auto* known = std::get_if<std::vector<NeoHookean>>(&laws)) return loop(Shared{}, *known);
+    return loop(Shared{}, std::get<std::vector<CalledLaw>>(laws));
   };
   if (shapes_in(mesh) == Shapes::parallelepipeds)
     return with(std::type_identity<OnParallelepipeds<Method>>{});

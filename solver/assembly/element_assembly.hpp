@@ -108,6 +108,17 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     });
   }
 
+  void powers(const State<Real>& state, const Rows<Real>& v, std::span<double> powers) const override {
+    const auto laws = laws_at(state.step);
+    this->per_element(
+        state, powers, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
+          return power<Method>(motion, element, history<Method>(state, at.pack),
+                               with_axes(laws[at.material], at.axes),
+                               nodes_of(gather_face_vectors<Number>(v, *at.groups, at.face),
+                                        gather_face_vectors<Number>(v, *at.groups, at.face + 1)));
+        });
+  }
+
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
     const auto laws = laws_at(state.step);
     this->per_element(
@@ -176,6 +187,16 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   std::vector<Law> laws_;  // of each material
 
  private:
+  /// Runs in every step of a motion's derivatives, hence `flatten`; see ForceLoop.
+  template <class Method, class Element, class LawAtStep>
+  [[gnu::flatten]] static Number power(const ElementMotion<Number>& motion, const Element& element,
+                                       HistoryBlock<Method> remembered, const LawAtStep& law,
+                                       const NodalVectors<Number>& v) {
+    using Kernel = KernelOf<Method>;
+    return double_dot(
+        from_modes(Kernel::force(Kernel::deformation(motion, element), element, remembered, law)), v);
+  }
+
   auto laws_at(double step) const {
     std::vector<std::decay_t<decltype(at_step(laws_.front(), step))>> laws;
     for (const Law& law : laws_) laws.push_back(at_step(law, step));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -20,9 +21,10 @@ using Assemble = ForceOf<Number>(const Mesh&, const Materials&, const HourglassS
 template <class Number>
 class BatchForce;
 
-/// Makes the elements of as many bodies of one mesh as `Number` has lanes.
+/// Makes the elements of as many bodies of one mesh as `Number` has lanes, from the materials that all of
+/// them have, or from those of each, which differ in the numbers of their laws.
 template <class Number>
-using AssembleBatch = std::unique_ptr<BatchForce<Number>>(const Mesh&, const Materials&,
+using AssembleBatch = std::unique_ptr<BatchForce<Number>>(const Mesh&, std::span<const Materials>,
                                                           const HourglassSettings&);
 
 /// What a method computes with on a number type.

@@ -50,6 +50,9 @@ class DelegatingForce : public InternalForce<Real> {
                 std::span<double> stresses) const override {
     own_->stresses(state, coordinates, stresses);
   }
+  void powers(const State<Real>& state, const Rows<Real>& v, std::span<double> powers) const override {
+    own_->powers(state, v, powers);
+  }
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
     own_->stiffness_bounds(state, bounds);
   }

@@ -45,6 +45,18 @@ struct ForceTraits {
   std::string_view no_potential;  ///< why it has no potential, as far as is known; empty if it has one
 };
 
+/// A motion of a body at displacements u (m), and the derivatives of a power by its undeformed shape: by
+/// reference positions of nodes, with u held, and by their masses. All fields are of all nodes.
+struct ShapeSlopes {
+  const NodalField& points;           ///< reference positions, m
+  const std::vector<double>& masses;  ///< kg
+  const NodalField& u;                ///< m
+  const NodalField& u_rate;           ///< m/s, on which dashpots act; empty: none
+  const NodalField& v;                ///< m/s, with which the power is meant
+  NodalField& by_points;              ///< W/m
+  std::vector<double>& by_masses;     ///< W/kg
+};
+
 /// The factors of all load curves of a scene.
 using Factors = std::span<const double>;
 
@@ -61,8 +73,19 @@ class BodyForce {
   /// Adds its forces, N.
   virtual void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const = 0;
 
+  /// Adds the derivatives of the power of its forces at velocities w, as if these were constant, by the
+  /// displacements and by the increments: the transposed tangent times w. Dead forces have none; those of
+  /// obstacles are not available.
+  virtual void add_derivatives_of_power(Factors /*factors*/, const NodalMotion& /*motion*/, NodalRows /*w*/,
+                                        AtNodes<Row<double>> /*by_u*/,
+                                        AtNodes<Row<double>> /*by_increment*/) const {}
+
   /// Adds the potential (J) at displacements u (m): the forces are minus its derivative.
   virtual void add_potential(Factors factors, NodalRows u, double& sum) const = 0;
+
+  /// Adds the derivatives of the power of its forces by the shape of the body. Throws InputError if it has
+  /// none.
+  virtual void add_slopes(Factors factors, const ShapeSlopes& shape) const = 0;
 
   /// Adds its share to the bounds of the frequencies of all nodes of the mesh, from their masses (kg) and the
   /// largest factors of the curves.

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "base/error.hpp"
 #include "forces/body_force.hpp"
 #include "mesh/vectors.hpp"
 
@@ -142,6 +145,10 @@ class ContactForce : public BodyForce {
   void add_potential(Factors factors, NodalRows u, double& sum) const final {
     const std::vector<Row<double>> rows(memory());
     add_contact_potential(factors, u, rows.data(), sum);
+  }
+  void add_slopes(Factors /*factors*/, const ShapeSlopes& /*shape*/) const final {
+    throw InputError(fmt::format(
+        "derivatives: [[{}]] has none by positions of nodes; allowed: a case without it", traits().name));
   }
   void add_stiffness(AtNodes<Row<float>> /*diagonal*/) const final {}
   void add_size(double /*arm*/, double& /*sum*/) const final {}

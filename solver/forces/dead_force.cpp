@@ -20,6 +20,9 @@ void DeadForce::resolve(ForceResolver& resolver) const {
   const std::size_t number = resolver.number_of(curve);
   for (const auto& load : consistent_loads(resolver.points, faces, total, moment))
     resolver.add_dead(number, load.node, load.force, 1.0);
+  resolver.slopes_of_dead.push_back([=, F = total, M = moment](Factors factors, const ShapeSlopes& shape) {
+    add_slopes_of_loads(factors[number], shape.points, faces, F, M, shape.v, shape.by_points);
+  });
 }
 
 }  // namespace sandglass

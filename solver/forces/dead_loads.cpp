@@ -1,5 +1,7 @@
 #include "forces/dead_loads.hpp"
 
+#include "base/error.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -12,10 +14,12 @@ std::vector<int> nodes_of(const std::vector<NodalLoad>& loads) {
 
 }  // namespace
 
-DeadLoads::DeadLoads(std::vector<NodalLoad> loads, std::vector<LoadSize> sizes)
+DeadLoads::DeadLoads(std::vector<NodalLoad> loads, std::vector<LoadSize> sizes,
+                     std::optional<std::vector<SlopesOfLoad>> slopes)
     : BodyForce(nodes_of(loads), {"force", true, false, ""}),
       loads_(std::move(loads)),
-      sizes_(std::move(sizes)) {}
+      sizes_(std::move(sizes)),
+      slopes_(std::move(slopes)) {}
 
 void DeadLoads::add_forces(Factors factors, const NodalMotion& /*motion*/,
                            AtNodes<Row<double>> forces) const {
@@ -27,6 +31,11 @@ void DeadLoads::add_forces(Factors factors, const NodalMotion& /*motion*/,
 void DeadLoads::add_potential(Factors factors, NodalRows u, double& sum) const {
   for (const auto& [node, force, curve] : loads_)
     sum -= factors[curve] * (force[0] * u[node][0] + force[1] * u[node][1] + force[2] * u[node][2]);
+}
+
+void DeadLoads::add_slopes(Factors factors, const ShapeSlopes& shape) const {
+  if (!slopes_) throw InputError("derivatives: loads on a part of a body have none by positions of nodes");
+  for (const SlopesOfLoad& add : *slopes_) add(factors, shape);
 }
 
 void DeadLoads::add_size(double arm, double& sum) const {

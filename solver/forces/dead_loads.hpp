@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include "forces/body_force.hpp"
 
 namespace sandglass {
@@ -10,15 +13,20 @@ struct LoadSize {
   double moment;  ///< N m
 };
 
+/// How the loads of a table depend on the shape of the body; see BodyForce::add_slopes.
+using SlopesOfLoad = std::function<void(Factors, const ShapeSlopes&)>;
+
 /// Nodal forces that do not depend on the motion of the body: dead forces and weight.
 class DeadLoads final : public BodyForce {
  public:
   /// `loads` (N, at the factor one) are sorted by curve and node and not empty; `sizes` are the magnitudes of
-  /// their tables.
-  explicit DeadLoads(std::vector<NodalLoad> loads, std::vector<LoadSize> sizes = {});
+  /// their tables, `slopes` how they depend on the shape of the body, if that is known.
+  explicit DeadLoads(std::vector<NodalLoad> loads, std::vector<LoadSize> sizes = {},
+                     std::optional<std::vector<SlopesOfLoad>> slopes = std::nullopt);
 
   void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const override;
   void add_potential(Factors factors, NodalRows u, double& sum) const override;
+  void add_slopes(Factors factors, const ShapeSlopes& shape) const override;
   void add_rates(Factors, const std::vector<double>&, std::vector<LoadRates>&) const override {}
   void add_stiffness(AtNodes<Row<float>> /*diagonal*/) const override {}
   void add_size(double arm, double& sum) const override;
@@ -28,6 +36,7 @@ class DeadLoads final : public BodyForce {
  private:
   std::vector<NodalLoad> loads_;
   std::vector<LoadSize> sizes_;
+  std::optional<std::vector<SlopesOfLoad>> slopes_;
 };
 
 }  // namespace sandglass

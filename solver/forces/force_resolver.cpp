@@ -43,7 +43,8 @@ BodyForces ForceResolver::all() const {
   BodyForces sorted;
   std::vector<NodalLoad> loads;
   for (const auto& [key, force] : dead) loads.push_back({key.second, force, key.first});
-  if (!loads.empty()) sorted.push_back(std::make_shared<DeadLoads>(std::move(loads), sizes_of_dead));
+  if (!loads.empty())
+    sorted.push_back(std::make_shared<DeadLoads>(std::move(loads), sizes_of_dead, slopes_of_dead));
   sorted.insert(sorted.end(), forces.begin(), forces.end());
   return sorted;
 }

@@ -20,6 +20,7 @@ struct ForceResolver {
   BodyForces forces = {};                                   ///< except dead loads
   std::map<std::pair<std::size_t, int>, Vector> dead = {};  ///< by curve and node, N
   std::vector<LoadSize> sizes_of_dead = {};
+  std::vector<SlopesOfLoad> slopes_of_dead = {};
   std::vector<double> attached = {};  ///< share of `masses` that is not of elements; empty if there is none
   std::span<const Hexahedron> cells = {};
   std::vector<double> young_moduli = {};  ///< of elements, of the undeformed material, Pa
@@ -36,11 +37,42 @@ struct ForceResolver {
   /// The number of a curve, which is added if it is new.
   std::size_t number_of(const LoadCurve& curve);
 
-  /// Adds a dead load (N), `factor` times a force.
+  /// Adds a dead load (N), `factor` times a force. A load that changes with the positions or masses of nodes
+  /// also adds to `slopes_of_dead`.
   void add_dead(std::size_t curve, int node, const Vector& force, double factor);
+
+  /// Adds the dead loads m a(X) (N) of all nodes, m their masses (kg), X their positions (m) and a an
+  /// acceleration (m/s^2), a function that takes and returns Triple of any number type.
+  template <class Acceleration>
+  void add_by_mass(std::size_t curve, const Acceleration& a);
 
   /// All forces, dead loads first.
   BodyForces all() const;
 };
+
+template <class Acceleration>
+void ForceResolver::add_by_mass(std::size_t curve, const Acceleration& a) {
+  LoadSize size{};
+  for (std::size_t n = 0; n < masses.size(); ++n) {
+    const Vector a_n = a(Triple<double>{points[n]}).entries;
+    add_dead(curve, static_cast<int>(n), a_n, masses[n]);
+    size.force += masses[n] * length(a_n);
+  }
+  sizes_of_dead.push_back(size);
+  slopes_of_dead.push_back([curve, a](Factors factors, const ShapeSlopes& shape) {
+    const double f = factors[curve];
+    for (std::size_t n = 0; n < shape.masses.size(); ++n) {
+      const Triple<double> v{shape.v[n]};
+      auto X = from_double<Dual<double>>(Triple<double>{shape.points[n]});
+      for (std::size_t i = 0; i < 3; ++i) {
+        X.entries[i].slope = 1.0;
+        const Dual<double> power = double_dot(from_double<Dual<double>>(v), a(X));
+        X.entries[i].slope = 0.0;
+        shape.by_points[n][i] += f * shape.masses[n] * power.slope;
+        if (i == 0) shape.by_masses[n] += f * power.value;
+      }
+    }
+  });
+}
 
 }  // namespace sandglass

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/vectors.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -29,6 +31,23 @@ class FacePressures final : public BodyForce {
     }
   }
 
+  void add_derivatives_of_power(Factors factors, const NodalMotion& motion, NodalRows w,
+                                AtNodes<Row<double>> by_u,
+                                AtNodes<Row<double>> /*by_increment*/) const override {
+    const double p = factors[curve_] * value_;
+    if (p == 0.0) return;
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      std::array<Vector, 4> velocities{};
+      for (std::size_t I = 0; I < 4; ++I) {
+        for (std::size_t i = 0; i < 3; ++i) velocities[I][i] = w[faces_[k][I]][i];
+      }
+      const auto unit = derivatives_of_pressure_power(corners(k, motion.u), velocities);
+      for (std::size_t I = 0; I < 4; ++I) {
+        for (std::size_t i = 0; i < 3; ++i) by_u[faces_[k][I]][i] += p * unit[I][i];
+      }
+    }
+  }
+
   /// Exact if the edges of the faces are held or lie in planes of symmetry through the origin: the volume
   /// below a face is a third of the integral of x . n da.
   void add_potential(Factors factors, NodalRows u, double& sum) const override {
@@ -39,6 +58,21 @@ class FacePressures final : public BodyForce {
         sum -= factors[curve_] * value_ / 3.0 *
                (x[I][0] * forces[I][0] + x[I][1] * forces[I][1] + x[I][2] * forces[I][2]);
       }
+    }
+  }
+
+  void add_slopes(Factors factors, const ShapeSlopes& shape) const override {
+    for (const Quadrilateral& face : faces_) {
+      const auto v = corners_of(shape.v, face), u = corners_of(shape.u, face);
+      auto x = corners_of(shape.points, face);
+      for (std::size_t I = 0; I < 4; ++I) x[I] = sandglass::sum(x[I], 1.0, u[I]);
+      const auto power = [&](const auto& points) {
+        Dual<double> sum;
+        for (const auto& point : points)
+          sum = sum - double_dot(from_double<Dual<double>>(interpolated(point.N, v)), point.normal);
+        return sum;
+      };
+      add_at_corners(factors[curve_] * value_, slopes_by_corners(x, power), face, shape.by_points);
     }
   }
 

@@ -17,18 +17,15 @@ class FaceSupports final : public BodyForce {
 
   void add_forces(Factors /*factors*/, const NodalMotion& motion,
                   AtNodes<Row<double>> forces) const override {
-    for (std::size_t k = 0; k < faces_.size(); ++k) {
-      const auto resist = [&](double factor, NodalRows field) {
-        for_each_point(k, field, [&](const std::array<double, 4>& N, const Vector& t) {
-          for (std::size_t I = 0; I < 4; ++I) {
-            for (std::size_t i = 0; i < 3; ++i) forces[faces_[k][I]][i] -= factor * N[I] * t[i];
-          }
-        });
-      };
-      resist(support_.stiffness, motion.u);
-      // The velocity is half a step old; without time it is zero.
-      if (support_.damping > 0.0) resist(support_.damping / motion.step, motion.increment);
-    }
+    resist(support_.stiffness, motion.u, forces);
+    // The velocity is half a step old; without time it is zero.
+    if (support_.damping > 0.0) resist(support_.damping / motion.step, motion.increment, forces);
+  }
+
+  void add_derivatives_of_power(Factors /*factors*/, const NodalMotion& motion, NodalRows w,
+                                AtNodes<Row<double>> by_u, AtNodes<Row<double>> by_increment) const override {
+    resist(support_.stiffness, w, by_u);
+    if (support_.damping > 0.0) resist(support_.damping / motion.step, w, by_increment);
   }
 
   void add_potential(Factors /*factors*/, NodalRows u, double& sum) const override {
@@ -40,6 +37,29 @@ class FaceSupports final : public BodyForce {
         }
       });
     }
+  }
+
+  void add_slopes(Factors /*factors*/, const ShapeSlopes& shape) const override {
+    const auto add = [&](double stiffness, const NodalField& field) {
+      for (const Quadrilateral& face : faces_) {
+        const auto a = corners_of(field, face), v = corners_of(shape.v, face);
+        const auto product = [&](const auto& points) {
+          Dual<double> sum;
+          for (const auto& point : points) {
+            const auto a_q = from_double<Dual<double>>(interpolated(point.N, a)),
+                       v_q = from_double<Dual<double>>(interpolated(point.N, v));
+            sum = sum + (support_.only_normal
+                             ? double_dot(point.normal, a_q) * double_dot(point.normal, v_q) / point.area
+                             : double_dot(a_q, v_q) * point.area);
+          }
+          return sum;
+        };
+        add_at_corners(-stiffness, slopes_by_corners(corners_of(shape.points, face), product), face,
+                       shape.by_points);
+      }
+    };
+    add(support_.stiffness, shape.u);
+    if (!shape.u_rate.empty()) add(support_.damping, shape.u_rate);
   }
 
   /// Treats each node as if its share of the area supported it alone.
@@ -88,6 +108,17 @@ class FaceSupports final : public BodyForce {
   }
 
  private:
+  /// Adds the forces that resist a field, such as u (m), in proportion to a factor per area.
+  void resist(double factor, NodalRows field, AtNodes<Row<double>> forces) const {
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      for_each_point(k, field, [&](const std::array<double, 4>& N, const Vector& t) {
+        for (std::size_t I = 0; I < 4; ++I) {
+          for (std::size_t i = 0; i < 3; ++i) forces[faces_[k][I]][i] -= factor * N[I] * t[i];
+        }
+      });
+    }
+  }
+
   /// Calls use(N, t) for the Gauss points of the k-th face: shape functions, and the part of `field`, such as
   /// u (m), that is resisted, normal or all, times the area.
   template <class Use>

@@ -64,6 +64,19 @@ void require_identity(const Hdf5File& file, const Identity& identity) {
 
 }  // namespace
 
+Identity identity_of(const Model& model) {
+  const Scene& scene = model.scene();
+  const MethodChoice& choice = model.choice();
+  return {{"case", scene.settings.name},
+          {"case_hash", scene.case_hash},
+          {"mesh_hash", scene.mesh_hash},
+          {"method", choice.method},
+          {"kappa", choice.kappa ? fmt::to_string(*choice.kappa) : "auto"},
+          {"kappa_modulus", choice.kappa_modulus == KappaModulus::shear ? "shear" : "p-wave"},
+          {"accuracy", fmt::to_string(choice.accuracy)},
+          {"precision", std::string(name_of(choice.precision))}};
+}
+
 void write_checkpoint_file(const std::filesystem::path& path, const Identity& identity, const RunSoFar& run) {
   auto file = Hdf5File::create(path, {.compressed = false, .sealed = true});
   for (const auto& [name, value] : identity) file.write_attribute("/", name, value);

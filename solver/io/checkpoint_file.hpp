@@ -5,12 +5,16 @@
 #include <utility>
 #include <vector>
 
+#include "problem/model.hpp"
 #include "problem/observer.hpp"
 
 namespace sandglass {
 
 /// The identity of a checkpoint: names and values, all of which must agree with the run that resumes from it.
 using Identity = std::vector<std::pair<std::string, std::string>>;
+
+/// What checkpoints of a model agree in: case, mesh and method.
+Identity identity_of(const Model& model);
 
 /// An unfinished run: everything reported so far, and the point from which to resume.
 struct RunSoFar {

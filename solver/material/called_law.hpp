@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <type_traits>
 
 #include "base/type_list.hpp"
@@ -10,31 +11,38 @@
 #include "material/point_load.hpp"
 #include "material/tangent_bound.hpp"
 #include "material/volumetric_parts.hpp"
+#include "math/pack.hpp"
 
 namespace sandglass {
 
-template <class T>
+template <class T, class Law>
 class OrientedLaw;
 
 /// An elastic law and its volumetric part behind function calls. Kernels are compiled once for all laws that
 /// they call, and laws once for all kernels: the cost of a build is methods + laws, not methods x laws. A
 /// call handles as many elements as a register holds, and all their integration points. The functions
-/// declared here are the law's, in material axes (null: the axes of space). `called_law_functions.hpp`
-/// defines them; the library instantiates them for the number types of its kernels, see CMakeLists.txt.
-class CalledLaw : public SumOfParts<CalledLaw> {
+/// declared here are the law's, in material axes (null: the axes of space). `Value` is the type of its
+/// numbers, see ElasticLawsOf. `called_law_functions.hpp` defines them; the library instantiates them for the
+/// number types of its kernels, see CMakeLists.txt.
+template <class Value>
+class CalledLawOf : public SumOfParts<CalledLawOf<Value>> {
  public:
   static constexpr LawTraits traits{.isotropic = false};  // known at run time
 
   template <class Law>
-  explicit CalledLaw(const Law& law, VolumetricPart volume = {})
+  explicit CalledLawOf(const Law& law, VolumetricPart volume = {})
       : law_(law), volume_(volume), shear_modulus_(law.shear_modulus()), bulk_modulus_(law.bulk_modulus()) {}
 
-  double shear_modulus() const { return shear_modulus_; }
-  double bulk_modulus() const { return bulk_modulus_; }
+  /// The laws of several bodies, which are of one kind and have one volumetric part, as one law with the
+  /// numbers of each in its lane.
+  explicit CalledLawOf(std::span<const CalledLawOf<double>> bodies) : CalledLawOf(beside(bodies)) {}
+
+  Value shear_modulus() const { return shear_modulus_; }
+  Value bulk_modulus() const { return bulk_modulus_; }
 
   /// The law in elements with these axes.
   template <class T>
-  OrientedLaw<T> with_axes(const MaterialAxes<T>* axes) const;
+  OrientedLaw<T, CalledLawOf> with_axes(const MaterialAxes<T>* axes) const;
 
   /// The volumetric energy (J/m^3), its derivative by J (Pa), and the second (Pa).
   template <class T>
@@ -106,6 +114,28 @@ class CalledLaw : public SumOfParts<CalledLaw> {
   Tensor<T> small_strain_stress(const Tensor<T>& strain, const MaterialAxes<T>* axes = nullptr) const;
 
  private:
+  template <class>
+  friend class CalledLawOf;
+
+  static CalledLawOf beside(std::span<const CalledLawOf<double>> bodies) {
+    const auto of_kind = [&]<template <class> class LawOf>(const LawOf<double>& /*first*/) {
+      LawOf<Value> all;
+      for (int lane = 0; lane < Lanes<Value>::width; ++lane) {
+        const auto& own = std::get<LawOf<double>>(bodies[static_cast<std::size_t>(lane)].law_);
+        const auto set = [&](const auto& here, const auto& there) {
+          Lanes<Value>::set(all.*here.member, lane, own.*there.member);
+        };
+        std::apply(
+            [&](const auto&... here) {
+              std::apply([&](const auto&... there) { (set(here, there), ...); }, LawOf<double>::parameters());
+            },
+            LawOf<Value>::parameters());
+      }
+      return CalledLawOf(all, bodies.front().volume_);
+    };
+    return std::visit(of_kind, bodies.front().law_);
+  }
+
   /// A volumetric energy (J/m^3) and its derivatives by J (Pa).
   template <class T>
   struct Volume {
@@ -122,21 +152,23 @@ class CalledLaw : public SumOfParts<CalledLaw> {
   template <std::size_t alternative, class Visit>
   decltype(auto) visit(const Visit& visit) const;
 
-  VariantOf<ElasticLaws> law_;
+  VariantOf<ElasticLawsOf<Value>> law_;
   VolumetricPart volume_;
-  double shear_modulus_;
-  double bulk_modulus_;
+  Value shear_modulus_;
+  Value bulk_modulus_;
 };
 
+using CalledLaw = CalledLawOf<double>;
+
 /// A called law in elements with material axes, T holding one element in each lane.
-template <class T>
-class OrientedLaw : public VolumeOfElastic<OrientedLaw<T>> {
+template <class T, class Law>
+class OrientedLaw : public VolumeOfElastic<OrientedLaw<T, Law>> {
  public:
-  static constexpr LawTraits traits = CalledLaw::traits;
+  static constexpr LawTraits traits = Law::traits;
 
-  OrientedLaw(const CalledLaw& law, const MaterialAxes<T>* axes) : law_(law), axes_(axes) {}
+  OrientedLaw(const Law& law, const MaterialAxes<T>* axes) : law_(law), axes_(axes) {}
 
-  const CalledLaw& elastic() const { return law_; }
+  const Law& elastic() const { return law_; }
 
   template <class U>
   U isochoric_energy(const Tensor<U>& H) const {
@@ -195,12 +227,13 @@ class OrientedLaw : public VolumeOfElastic<OrientedLaw<T>> {
     const MaterialAxes<T>* axes_;
   };
 
-  const CalledLaw& law_;
+  const Law& law_;
   const MaterialAxes<T>* axes_;
 };
 
+template <class Value>
 template <class T>
-OrientedLaw<T> CalledLaw::with_axes(const MaterialAxes<T>* axes) const {
+OrientedLaw<T, CalledLawOf<Value>> CalledLawOf<Value>::with_axes(const MaterialAxes<T>* axes) const {
   return {*this, axes};
 }
 

@@ -3,7 +3,7 @@
 #include "material/called_law.hpp"
 #include "material/small_strain.hpp"
 
-/// The definitions of `CalledLaw`, for the source file of each number type; see CMakeLists.txt.
+/// The definitions of `CalledLawOf`, for the source file of each number type; see CMakeLists.txt.
 namespace sandglass {
 
 namespace detail {
@@ -57,16 +57,18 @@ Tensor<T> from_axes_of(const Law& /*law*/, const Tensor<T>& stress, const Materi
 }  // namespace detail
 
 /// Calls visit(law) after a chain of comparisons; unlike std::visit it needs no second call.
+template <class Value>
 template <std::size_t alternative, class Visit>
-decltype(auto) CalledLaw::visit(const Visit& visit) const {
-  if constexpr (alternative + 1 < std::variant_size_v<VariantOf<ElasticLaws>>) {
+decltype(auto) CalledLawOf<Value>::visit(const Visit& visit) const {
+  if constexpr (alternative + 1 < std::variant_size_v<VariantOf<ElasticLawsOf<Value>>>) {
     if (law_.index() != alternative) return this->visit<alternative + 1>(visit);
   }
   return visit(*std::get_if<alternative>(&law_));
 }
 
+template <class Value>
 template <class T>
-CalledLaw::Volume<T> CalledLaw::called_volume(const T& x) const {
+typename CalledLawOf<Value>::template Volume<T> CalledLawOf<Value>::called_volume(const T& x) const {
   const T K(bulk_modulus_);
   return std::visit(
       [&]<class Part>(const Part&) {
@@ -75,14 +77,16 @@ CalledLaw::Volume<T> CalledLaw::called_volume(const T& x) const {
       volume_);
 }
 
+template <class Value>
 template <class T>
-T CalledLaw::isochoric_energy(const Tensor<T>& H, const MaterialAxes<T>* axes) const {
+T CalledLawOf<Value>::isochoric_energy(const Tensor<T>& H, const MaterialAxes<T>* axes) const {
   return visit<0>([&](const auto& law) { return law.isochoric_energy(detail::in_axes_of(law, H, axes)); });
 }
 
+template <class Value>
 template <class T>
-void CalledLaw::weighted_piola(std::size_t count, const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* VP,
-                               const MaterialAxes<T>* axes) const {
+void CalledLawOf<Value>::weighted_piola(std::size_t count, const PointLoad<T>* at, const Tensor<T>* H,
+                                        Tensor<T>* VP, const MaterialAxes<T>* axes) const {
   visit<0>([=]<class Law>(const Law& law) {
     if constexpr (!is_isotropic<Law>) {
       if (axes != nullptr) return detail::weighted_piola(law, count, at, H, VP, *axes);
@@ -91,9 +95,10 @@ void CalledLaw::weighted_piola(std::size_t count, const PointLoad<T>* at, const 
   });
 }
 
+template <class Value>
 template <class T>
-void CalledLaw::weighted_kirchhoff(const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* V_tau,
-                                   const MaterialAxes<T>* axes) const {
+void CalledLawOf<Value>::weighted_kirchhoff(const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* V_tau,
+                                            const MaterialAxes<T>* axes) const {
   visit<0>([=](const auto& law) {
     const Tensor<T> own = detail::in_axes_of(law, *H, axes);
     detail::weighted_kirchhoff(law, at, &own, V_tau);
@@ -101,24 +106,29 @@ void CalledLaw::weighted_kirchhoff(const PointLoad<T>* at, const Tensor<T>* H, T
   });
 }
 
+template <class Value>
 template <class T>
-TangentBound<T> CalledLaw::tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p, const T& bulk,
-                                         const MaterialAxes<T>* axes) const {
+TangentBound<T> CalledLawOf<Value>::tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
+                                                  const T& bulk, const MaterialAxes<T>* axes) const {
   return visit<0>([&](const auto& law) {
     return sandglass::tangent_bound(law, detail::in_axes_of(law, H, axes), J_minus_one, p, bulk);
   });
 }
 
+template <class Value>
 template <class T>
-TangentBound<T> CalledLaw::viscoelastic_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                                      const T& bulk, const MaterialAxes<T>* axes) const {
+TangentBound<T> CalledLawOf<Value>::viscoelastic_tangent_bound(const Tensor<T>& H, const T& J_minus_one,
+                                                               const T& p, const T& bulk,
+                                                               const MaterialAxes<T>* axes) const {
   return visit<0>([&](const auto& law) {
     return sandglass::viscoelastic_tangent_bound(law, detail::in_axes_of(law, H, axes), J_minus_one, p, bulk);
   });
 }
 
+template <class Value>
 template <class T>
-Tensor<T> CalledLaw::small_strain_stress(const Tensor<T>& strain, const MaterialAxes<T>* axes) const {
+Tensor<T> CalledLawOf<Value>::small_strain_stress(const Tensor<T>& strain,
+                                                  const MaterialAxes<T>* axes) const {
   return visit<0>([&](const auto& law) {
     return detail::from_axes_of(
         law, sandglass::small_strain_stress(law, detail::in_axes_of(law, strain, axes)), axes);

@@ -15,28 +15,29 @@ namespace sandglass {
 /// Ef is the Green strain, without the change of volume, of a fibre along a. The energy is smooth: fibres
 /// resist shortening as well as stretching, but soften below a stretch of 1/sqrt(3), where the solid kinks if
 /// k >> mu.
-struct FibreNeoHookean : FibreReinforced<FibreNeoHookean> {
+template <class Value>
+struct FibreNeoHookeanOf : FibreReinforced<FibreNeoHookeanOf<Value>> {
   static constexpr std::string_view name = "fibre-neo-hookean";
   static constexpr std::string_view summary =
       "neo-Hookean with one family of fibres, quadratic in their isochoric Green strain";
 
-  double young_modulus = 0.0;
-  double poisson_ratio = 0.0;
-  double fibre_modulus = 0.0;
+  Value young_modulus = 0.0;
+  Value poisson_ratio = 0.0;
+  Value fibre_modulus = 0.0;
 
   static constexpr auto parameters() {
     return std::tuple{
-        Parameter{&FibreNeoHookean::young_modulus, "young_modulus", "Pa", Range::positive(),
+        Parameter{&FibreNeoHookeanOf::young_modulus, "young_modulus", "Pa", Range::positive(),
                   "initial Young's modulus of the solid without fibres"},
-        Parameter{&FibreNeoHookean::poisson_ratio, "poisson_ratio", "-", Range::between(-1.0, 0.5),
+        Parameter{&FibreNeoHookeanOf::poisson_ratio, "poisson_ratio", "-", Range::between(-1.0, 0.5),
                   "initial Poisson's ratio of the solid without fibres"},
-        Parameter{&FibreNeoHookean::fibre_modulus, "fibre_modulus", "Pa", Range::at_least(0.0),
+        Parameter{&FibreNeoHookeanOf::fibre_modulus, "fibre_modulus", "Pa", Range::at_least(0.0),
                   "increase of Young's modulus along the fibres, for an incompressible solid"}};
   }
 
   /// The initial moduli of the solid without fibres, Pa.
-  constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
-  constexpr double bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
+  constexpr Value shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
+  constexpr Value bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
 
   template <class T>
   T matrix_modulus(const Tensor<T>& /*H*/, const VolumeChange<T>& /*change*/) const {
@@ -73,5 +74,7 @@ struct FibreNeoHookean : FibreReinforced<FibreNeoHookean> {
            fibre_stress_bound(T(fibre_modulus) * c * Ef, square);
   }
 };
+
+using FibreNeoHookean = FibreNeoHookeanOf<double>;
 
 }  // namespace sandglass

@@ -14,19 +14,20 @@ namespace sandglass {
 /// the isochoric Green strain E in material axes:
 ///   W = C/2 (exp(Q) - 1) + K/2 (J - 1)^2,
 ///   Q = bf E11^2 + bt (E22^2 + E33^2 + 2 E23^2) + 2 bfs (E12^2 + E13^2).
-struct Guccione : FibreReinforced<Guccione> {
+template <class Value>
+struct GuccioneOf : FibreReinforced<GuccioneOf<Value>> {
   static constexpr std::string_view name = "guccione";
   static constexpr std::string_view summary =
       "exponential of a quadratic form of the isochoric Green strain, stiffer along fibres: heart muscle";
 
-  double stiffness = 0.0;
-  double along = 0.0;
-  double across = 0.0;
-  double shear = 0.0;
-  double bulk = 0.0;
+  Value stiffness = 0.0;
+  Value along = 0.0;
+  Value across = 0.0;
+  Value shear = 0.0;
+  Value bulk = 0.0;
 
   static constexpr auto parameters() {
-    using Self = Guccione;
+    using Self = GuccioneOf;
     return std::tuple{
         Parameter{&Self::stiffness, "stiffness", "Pa", Range::positive(),
                   "C, twice the factor of the energy"},
@@ -39,10 +40,10 @@ struct Guccione : FibreReinforced<Guccione> {
 
   /// The initial shear modulus (Pa), as a mean over all changes of shape: their stiffnesses are C times bt
   /// (twice), bfs (twice) and (2 bf + bt)/3.
-  constexpr double shear_modulus() const {
+  constexpr Value shear_modulus() const {
     return 0.1 * stiffness * (2.0 * across + 2.0 * shear + (2.0 * along + across) / 3.0);
   }
-  constexpr double bulk_modulus() const { return bulk; }
+  constexpr Value bulk_modulus() const { return bulk; }
 
   /// Zero: there is no matrix besides the fibres.
   template <class T>
@@ -86,8 +87,8 @@ struct Guccione : FibreReinforced<Guccione> {
     const T factor = T(stiffness) * (T(1) + expm1(double_dot(BE, E)));
     const Tensor<T> dev_M = deviator(M);
     const T curvature =
-        T(across) * l * l + T(2.0 / 3.0 * std::max(along + across - 2.0 * shear, 0.0)) * c * c +
-        T(4.0 / 3.0 * std::max(shear - across, 0.0)) * l * c + T(2) * double_dot(dev_M, dev_M);
+        T(across) * l * l + T(2.0 / 3.0 * max(along + across - 2.0 * shear, Value(0.0))) * c * c +
+        T(4.0 / 3.0 * max(shear - across, Value(0.0))) * l * c + T(2) * double_dot(dev_M, dev_M);
     return change_of_shape_bound(factor * curvature) +
            isochoric_stress_bound(factor * T(1.0 / 3.0) * trace(M), factor * dev_M);
   }
@@ -102,5 +103,7 @@ struct Guccione : FibreReinforced<Guccione> {
              bfs * E(2, 0), bt * E(2, 1), bt * E(2, 2)}};
   }
 };
+
+using Guccione = GuccioneOf<double>;
 
 }  // namespace sandglass

@@ -16,24 +16,25 @@ namespace sandglass {
 ///     + a_fs/(2 b_fs) (exp(b_fs I8bar^2) - 1) + K/2 (J - 1)^2,
 /// i = f, s: fibres and sheets resist only stretch, <x> = max(x, 0); I8bar is their shear. In the isochoric
 /// Green strain, I4bar_f - 1 = 2 E11, I4bar_s - 1 = 2 E22 and I8bar = 2 E12.
-struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
+template <class Value>
+struct HolzapfelOgdenOf : FibreReinforced<HolzapfelOgdenOf<Value>> {
   static constexpr std::string_view name = "holzapfel-ogden";
   static constexpr std::string_view summary =
       "exponential matrix with fibres and sheets that resist only stretch: heart muscle";
   static constexpr LawTraits traits{.isotropic = false, .slackens = true};
 
-  double a = 0.0;
-  double b = 0.0;
-  double a_f = 0.0;
-  double b_f = 0.0;
-  double a_s = 0.0;
-  double b_s = 0.0;
-  double a_fs = 0.0;
-  double b_fs = 0.0;
-  double bulk = 0.0;
+  Value a = 0.0;
+  Value b = 0.0;
+  Value a_f = 0.0;
+  Value b_f = 0.0;
+  Value a_s = 0.0;
+  Value b_s = 0.0;
+  Value a_fs = 0.0;
+  Value b_fs = 0.0;
+  Value bulk = 0.0;
 
   static constexpr auto parameters() {
-    using Self = HolzapfelOgden;
+    using Self = HolzapfelOgdenOf;
     constexpr Range any_stiffness = Range::at_least(0.0), exponent = Range::positive();
     return std::tuple{
         Parameter{&Self::a, "a", "Pa", Range::positive(), "initial shear modulus of the matrix"},
@@ -49,8 +50,8 @@ struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
 
   /// The initial shear modulus (Pa), as a mean over all changes of shape: half of them stretch the fibres,
   /// half the sheets.
-  constexpr double shear_modulus() const { return a + 0.1 * (4.0 / 3.0 * (a_f + a_s) + 2.0 * a_fs); }
-  constexpr double bulk_modulus() const { return bulk; }
+  constexpr Value shear_modulus() const { return a + 0.1 * (4.0 / 3.0 * (a_f + a_s) + 2.0 * a_fs); }
+  constexpr Value bulk_modulus() const { return bulk; }
 
   template <class T>
   T matrix_modulus(const Tensor<T>& H, const VolumeChange<T>& /*change*/) const {
@@ -125,7 +126,7 @@ struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
 
   /// a/(2 b) (exp(b x^2) - 1) of x = 2 E, Pa.
   template <class T>
-  static Exponential<T> exponential(double a, double b, const T& E) {
+  static Exponential<T> exponential(const Value& a, const Value& b, const T& E) {
     const T exponent = T(4.0 * b) * E * E;
     const T growth = expm1(exponent), stiffness = T(4.0 * a) * (T(1) + growth);
     return {T(0.5 * a / b) * growth, stiffness * E, stiffness * (T(1) + T(2) * exponent)};
@@ -133,7 +134,7 @@ struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
 
   /// The same for stretched fibres; shortened ones have no energy.
   template <class T>
-  static Exponential<T> stretched(double a, double b, const T& E) {
+  static Exponential<T> stretched(const Value& a, const Value& b, const T& E) {
     Exponential<T> psi = exponential(a, b, max(E, T(0)));
     psi.curvature = select(E < T(0), T(0), psi.curvature);
     return psi;
@@ -162,5 +163,7 @@ struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
     return first_invariant_tangent_bound(mu, T(0.5 * b) * mu, H);
   }
 };
+
+using HolzapfelOgden = HolzapfelOgdenOf<double>;
 
 }  // namespace sandglass

@@ -1,5 +1,12 @@
 #include "material/laws.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -22,6 +29,36 @@ KernelLaw to_kernel_law(const Viscoelastic<Law>& law, VolumetricPart volume) {
 
 KernelLaw kernel_law(const AnyLaw& any_law, VolumetricPart volume) {
   return std::visit([=](const auto& law) { return to_kernel_law(law, volume); }, any_law);
+}
+
+AnyLaw with_parameters(AnyLaw law, const std::map<std::string, double>& values, std::string_view where) {
+  std::size_t known = 0;
+  std::vector<std::string_view> names;
+  for_each_parameter(law, [&](const auto& parameter, double& value) {
+    names.push_back(parameter.name);
+    const auto given = values.find(std::string(parameter.name));
+    if (given == values.end()) return;
+    ++known;
+    value = given->second;
+    if (parameter.range.contains(value)) return;
+    throw InputError(
+        fmt::format("{}: {} = {} must be in {}", where, parameter.name, value, parameter.range.text()));
+  });
+  for (const auto& [name, value] : values) {
+    if (known == values.size()) break;
+    if (std::ranges::find(names, name) != names.end()) continue;
+    throw InputError(fmt::format("{}: '{}' is no parameter of '{}'; allowed: {}", where, name, name_of(law),
+                                 fmt::join(names, ", ")));
+  }
+  std::visit(
+      [&]<class Law>(const Law& own) {
+        if constexpr (requires { own.broken_rule(); }) {
+          if (const auto broken = own.broken_rule())
+            throw InputError(fmt::format("{}: {} {}", where, broken->parameter, broken->message));
+        }
+      },
+      law);
+  return law;
 }
 
 CalledLaw elastic_law(const KernelLaw& kernel_law) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "base/type_list.hpp"
 #include "material/called_law.hpp"
 #include "material/elastic_laws.hpp"
@@ -42,6 +45,20 @@ inline bool splits_volume(const AnyLaw& any_law) {
 inline std::string_view name_of(const AnyLaw& any_law) {
   return std::visit([]<class Law>(const Law&) { return Law::name; }, any_law);
 }
+
+/// Calls visit(parameter, value) for each parameter of a law chosen at run time, as it is declared.
+template <class Visit>
+void for_each_parameter(AnyLaw& any_law, const Visit& visit) {
+  std::visit(
+      [&]<class Law>(Law& law) {
+        std::apply([&](const auto&... p) { (visit(p, law.*p.member), ...); }, Law::parameters());
+      },
+      any_law);
+}
+
+/// The law with other values of some parameters, by their names. Throws InputError, which begins with
+/// `where`, for unknown names, values out of range and broken rules.
+AnyLaw with_parameters(AnyLaw law, const std::map<std::string, double>& values, std::string_view where);
 
 /// Lame's first parameter of the undeformed state, lambda = K - 2/3 mu, in Pa.
 template <class Law>

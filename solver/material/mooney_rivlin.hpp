@@ -13,24 +13,25 @@ namespace sandglass {
 /// The law of Mooney and Rivlin with isochoric invariants of C = F^T F (Mooney, J. Applied Physics 11,
 /// 1940, 582-592; Rivlin, Phil. Trans. R. Soc. A 241, 1948, 379-397; isochoric as in ABAQUS),
 ///   W = c10 (J^(-2/3) tr C - 3) + c01 (J^(-4/3) (tr^2 C - tr C^2) / 2 - 3) + K/2 (J - 1)^2.
-struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
+template <class Value>
+struct MooneyRivlinOf : QuadraticVolume<MooneyRivlinOf<Value>> {
   static constexpr std::string_view name = "mooney-rivlin";
   static constexpr std::string_view summary = "linear in both isochoric invariants";
   static constexpr LawTraits traits{};
 
-  double c10 = 0.0;
-  double c01 = 0.0;
-  double bulk = 0.0;
+  Value c10 = 0.0;
+  Value c01 = 0.0;
+  Value bulk = 0.0;
 
   static constexpr auto parameters() {
     return std::tuple{
-        Parameter{&MooneyRivlin::c10, "c10", "Pa", Range::positive(), "factor of the first invariant"},
-        Parameter{&MooneyRivlin::c01, "c01", "Pa", Range::at_least(0.0), "factor of the second invariant"},
-        Parameter{&MooneyRivlin::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
+        Parameter{&MooneyRivlinOf::c10, "c10", "Pa", Range::positive(), "factor of the first invariant"},
+        Parameter{&MooneyRivlinOf::c01, "c01", "Pa", Range::at_least(0.0), "factor of the second invariant"},
+        Parameter{&MooneyRivlinOf::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
-  constexpr double shear_modulus() const { return 2.0 * (c10 + c01); }
-  constexpr double bulk_modulus() const { return bulk; }
+  constexpr Value shear_modulus() const { return 2.0 * (c10 + c01); }
+  constexpr Value bulk_modulus() const { return bulk; }
 
   /// c10 (I1bar - 3) + c01 (I2bar - 3), in J/m^3. I2bar is the first invariant of the cofactor of F, whose
   /// determinant is J^2, so the same function computes both.
@@ -100,5 +101,7 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
     return deviator(s);
   }
 };
+
+using MooneyRivlin = MooneyRivlinOf<double>;
 
 }  // namespace sandglass

@@ -12,22 +12,23 @@ namespace sandglass {
 ///   W = mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2,
 /// written in the displacement gradient H = F - I, so that nothing cancels near the undeformed state.
 /// Energies in J/m^3, stresses in Pa, per reference volume.
-struct NeoHookean : FirstInvariant<NeoHookean> {
+template <class Value>
+struct NeoHookeanOf : FirstInvariant<NeoHookeanOf<Value>> {
   static constexpr std::string_view name = "neo-hookean";
   static constexpr std::string_view summary = "isochoric neo-Hookean with a quadratic volumetric energy";
 
-  double young_modulus = 0.0;
-  double poisson_ratio = 0.0;
+  Value young_modulus = 0.0;
+  Value poisson_ratio = 0.0;
 
   static constexpr auto parameters() {
-    return std::tuple{Parameter{&NeoHookean::young_modulus, "young_modulus", "Pa", Range::positive(),
+    return std::tuple{Parameter{&NeoHookeanOf::young_modulus, "young_modulus", "Pa", Range::positive(),
                                 "initial Young's modulus"},
-                      Parameter{&NeoHookean::poisson_ratio, "poisson_ratio", "-", Range::between(-1.0, 0.5),
+                      Parameter{&NeoHookeanOf::poisson_ratio, "poisson_ratio", "-", Range::between(-1.0, 0.5),
                                 "initial Poisson's ratio"}};
   }
 
-  constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
-  constexpr double bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
+  constexpr Value shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
+  constexpr Value bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
 
   /// mu/2 (J^(-2/3) tr(F^T F) - 3), in J/m^3.
   template <class T>
@@ -47,5 +48,7 @@ struct NeoHookean : FirstInvariant<NeoHookean> {
     return first_invariant_tangent_bound(T(shear_modulus()), H);
   }
 };
+
+using NeoHookean = NeoHookeanOf<double>;
 
 }  // namespace sandglass

@@ -21,28 +21,30 @@ namespace sandglass {
 ///
 /// It is written in logarithmic stretches x_a = ln lbar_a, which sum to zero, so that nothing cancels near
 /// the undeformed state. With b = F F^T = I + e, x_a is half the deviator of log1p(e_a).
-struct Ogden : QuadraticVolume<Ogden> {
+template <class Value>
+struct OgdenOf : QuadraticVolume<OgdenOf<Value>> {
   static constexpr std::string_view name = "ogden";
   static constexpr std::string_view summary = "two powers of the isochoric principal stretches";
   static constexpr LawTraits traits{};
 
-  double mu1 = 0.0;
-  double alpha1 = 2.0;
-  double mu2 = 0.0;
-  double alpha2 = 2.0;
-  double K = 0.0;
+  Value mu1 = 0.0;
+  Value alpha1 = 2.0;
+  Value mu2 = 0.0;
+  Value alpha2 = 2.0;
+  Value K = 0.0;
 
   static constexpr auto parameters() {
     return std::tuple{
-        Parameter{&Ogden::mu1, "mu1", "Pa", Range::positive(), "shear modulus of the first term"},
-        Parameter{&Ogden::alpha1, "alpha1", "-", Range::any(), "exponent of the first term"},
-        Parameter{&Ogden::mu2, "mu2", "Pa", Range::at_least(0.0), "shear modulus of the second term", false},
-        Parameter{&Ogden::alpha2, "alpha2", "-", Range::any(), "exponent of the second term", false},
-        Parameter{&Ogden::K, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
+        Parameter{&OgdenOf::mu1, "mu1", "Pa", Range::positive(), "shear modulus of the first term"},
+        Parameter{&OgdenOf::alpha1, "alpha1", "-", Range::any(), "exponent of the first term"},
+        Parameter{&OgdenOf::mu2, "mu2", "Pa", Range::at_least(0.0), "shear modulus of the second term",
+                  false},
+        Parameter{&OgdenOf::alpha2, "alpha2", "-", Range::any(), "exponent of the second term", false},
+        Parameter{&OgdenOf::K, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
-  constexpr double shear_modulus() const { return mu1 + mu2; }
-  constexpr double bulk_modulus() const { return K; }
+  constexpr Value shear_modulus() const { return mu1 + mu2; }
+  constexpr Value bulk_modulus() const { return K; }
 
   /// sum_p 2 mu_p / alpha_p^2 sum_a (e^(alpha x_a) - 1), in J/m^3: because the x_a sum to zero, alpha x_a may
   /// be subtracted, which leaves only positive terms.
@@ -142,8 +144,10 @@ struct Ogden : QuadraticVolume<Ogden> {
   /// 2 mu/alpha (e^(alpha x_a) - 1) (Pa) of one term. The product of the exponentials is one, so that the
   /// smallest follows from the others, whose digits are all significant.
   template <class T>
-  static std::array<T, 3> stresses_of_term(double mu, double alpha, const std::array<T, 3>& x) {
-    if (std::abs(alpha) < 1e-20) return {T(2.0 * mu) * x[0], T(2.0 * mu) * x[1], T(2.0 * mu) * x[2]};
+  static std::array<T, 3> stresses_of_term(const Value& mu, const Value& exponent,
+                                           const std::array<T, 3>& x) {
+    constexpr double least = 1e-16;  // Hencky's law to the last bit
+    const Value alpha = select(abs(exponent) < Value(least), Value(least), exponent);
     T a = T(alpha) * x[0], b = T(alpha) * x[1], c = T(alpha) * x[2];
     const auto swap_if = [](const auto& mask, T& left, T& right) {
       const T old = left;
@@ -168,7 +172,7 @@ struct Ogden : QuadraticVolume<Ogden> {
   template <class T>
   std::array<T, 3> principal_stresses(const std::array<T, 3>& x) const {
     const std::array<T, 3> t = stresses_of_term(mu1, alpha1, x);
-    if (mu2 == 0.0) return without_mean(t);
+    if (is_zero(mu2)) return without_mean(t);
     const std::array<T, 3> second = stresses_of_term(mu2, alpha2, x);
     return without_mean(std::array<T, 3>{t[0] + second[0], t[1] + second[1], t[2] + second[2]});
   }
@@ -186,7 +190,7 @@ struct Ogden : QuadraticVolume<Ogden> {
       const T x_low = min(x[a], x[b]);
       const T z = (max(e[a], e[b]) - low) / (T(1) + low);
       const T l = log1p(z);
-      const auto term = [&](double mu, double alpha) {
+      const auto term = [&](const Value& mu, const Value& alpha) {
         return T(mu) * (T(1) + expm1(T(alpha) * x_low)) * relative_expm1(T(0.5 * alpha) * l);
       };
       secants[c] = (term(mu1, alpha1) + term(mu2, alpha2)) * relative_log1p(z) / (T(1) + low);
@@ -202,5 +206,7 @@ struct Ogden : QuadraticVolume<Ogden> {
                             [this](const auto& values) { return this->stress_secants(values); });
   }
 };
+
+using Ogden = OgdenOf<double>;
 
 }  // namespace sandglass

@@ -22,23 +22,24 @@ namespace sandglass {
 /// and the element becomes unstable when K |dev b|^2 exceeds a few mu. A block stretched and sheared with
 /// tl-mean-dilatation withstood 30 % at nu = 0.25, 20 % at 0.3, 10 % at 0.4 and less at 0.45. Other methods
 /// use the whole energy and are not affected.
-struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
+template <class Value>
+struct StVenantKirchhoffOf : QuadraticVolume<StVenantKirchhoffOf<Value>> {
   static constexpr std::string_view name = "st-venant-kirchhoff";
   static constexpr std::string_view summary = "Hooke's law of the Green strain; soft in strong compression";
   static constexpr LawTraits traits{.splits_volume = false, .softening_stretch = 0.57735026918962576};
 
-  double young_modulus = 0.0;
-  double poisson_ratio = 0.0;
+  Value young_modulus = 0.0;
+  Value poisson_ratio = 0.0;
 
   static constexpr auto parameters() {
-    return std::tuple{Parameter{&StVenantKirchhoff::young_modulus, "young_modulus", "Pa", Range::positive(),
+    return std::tuple{Parameter{&StVenantKirchhoffOf::young_modulus, "young_modulus", "Pa", Range::positive(),
                                 "initial Young's modulus"},
-                      Parameter{&StVenantKirchhoff::poisson_ratio, "poisson_ratio", "-",
+                      Parameter{&StVenantKirchhoffOf::poisson_ratio, "poisson_ratio", "-",
                                 Range::between(-1.0, 0.5), "initial Poisson's ratio"}};
   }
 
-  constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
-  constexpr double bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
+  constexpr Value shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
+  constexpr Value bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
 
   /// W - K/2 (J - 1)^2 in J/m^3, the difference of the squares as a product: tr E - (J - 1) is of second
   /// order.
@@ -106,7 +107,7 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
   /// 2 (tr L) d : D <= sqrt(3) |d| |dev L|^2 + |d| (tr L)^2 / sqrt(3), |dev L|^2 = |L|^2 - (tr L)^2 / 3.
   template <class T>
   TangentBound<T> tangent_bound(const Tensor<T>& H) const {
-    const double lambda = bulk_modulus() - 2.0 / 3.0 * shear_modulus();
+    const Value lambda = bulk_modulus() - 2.0 / 3.0 * shear_modulus();
     const T mu(shear_modulus());
     const Tensor<T> e = left_cauchy_green_minus_identity(H);
     const Tensor<T> dev_e = deviator(e);
@@ -114,7 +115,7 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
     const T d = sqrt(double_dot(dev_e, dev_e));
     const Tensor<T> tau = (T(0.5 * lambda) * trace(e)) * (identity<T>() + e) + mu * (e + e * e);
     const T stretch = m + T(std::sqrt(2.0 / 3.0)) * d;  // largest eigenvalue of b
-    const T stiff(std::max(lambda, 0.0));
+    const T stiff(max(lambda, Value(0.0)));
     const T last = T(2) * mu * (stretch * stretch);
     const T gradient = largest_eigenvalue_bound(tau) + last + stiff * d * (T(std::sqrt(3.0)) * m + d);
     const T volumetric = stiff * (m * m - T(1.0 / 3.0) * (d * d));
@@ -128,8 +129,8 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
     const T J_minus_one = jacobian_minus_one(H);
-    return tangent_bound(H) +
-           volumetric_tangent_bound(T(1) + J_minus_one, -pressure(J_minus_one), -bulk_tangent(J_minus_one));
+    return tangent_bound(H) + volumetric_tangent_bound(T(1) + J_minus_one, -this->pressure(J_minus_one),
+                                                       -this->bulk_tangent(J_minus_one));
   }
 
  private:
@@ -151,5 +152,7 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
     return T(0.5) * double_dot(H, H) - (trace(cof_H) + det_H);
   }
 };
+
+using StVenantKirchhoff = StVenantKirchhoffOf<double>;
 
 }  // namespace sandglass

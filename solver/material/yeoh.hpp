@@ -13,22 +13,23 @@ namespace sandglass {
 /// The law of Yeoh (Rubber Chemistry and Technology 66, 1993, 754-771) with the isochoric first invariant,
 ///   W = c1 x + c2 x^2 + c3 x^3 + K/2 (J - 1)^2,  x = J^(-2/3) tr(F^T F) - 3.
 /// With c2 < 0 < c3 it softens first and stiffens later, as rubber and many tissues do.
-struct Yeoh : FirstInvariant<Yeoh> {
+template <class Value>
+struct YeohOf : FirstInvariant<YeohOf<Value>> {
   static constexpr std::string_view name = "yeoh";
   static constexpr std::string_view summary =
       "cubic in the isochoric first invariant: softens, then stiffens";
 
-  double c1 = 0.0;
-  double c2 = 0.0;
-  double c3 = 0.0;
-  double bulk = 0.0;
+  Value c1 = 0.0;
+  Value c2 = 0.0;
+  Value c3 = 0.0;
+  Value bulk = 0.0;
 
   static constexpr auto parameters() {
     return std::tuple{
-        Parameter{&Yeoh::c1, "c1", "Pa", Range::positive(), "half of the initial shear modulus"},
-        Parameter{&Yeoh::c2, "c2", "Pa", Range::any(), "factor of the first invariant squared"},
-        Parameter{&Yeoh::c3, "c3", "Pa", Range::at_least(0.0), "factor of the first invariant cubed"},
-        Parameter{&Yeoh::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
+        Parameter{&YeohOf::c1, "c1", "Pa", Range::positive(), "half of the initial shear modulus"},
+        Parameter{&YeohOf::c2, "c2", "Pa", Range::any(), "factor of the first invariant squared"},
+        Parameter{&YeohOf::c3, "c3", "Pa", Range::at_least(0.0), "factor of the first invariant cubed"},
+        Parameter{&YeohOf::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
   /// c1 + 2 c2 x + 3 c3 x^2, a quarter of the shear modulus at x, stays positive for all x > 0.
@@ -39,8 +40,8 @@ struct Yeoh : FirstInvariant<Yeoh> {
                                         c2, 3.0 * c1 * c3)};
   }
 
-  constexpr double shear_modulus() const { return 2.0 * c1; }
-  constexpr double bulk_modulus() const { return bulk; }
+  constexpr Value shear_modulus() const { return 2.0 * c1; }
+  constexpr Value bulk_modulus() const { return bulk; }
 
   /// c1 x + c2 x^2 + c3 x^3, in J/m^3.
   template <class T>
@@ -69,5 +70,7 @@ struct Yeoh : FirstInvariant<Yeoh> {
     return T(2.0 * c1) + x * (T(4.0 * c2) + x * T(6.0 * c3));
   }
 };
+
+using Yeoh = YeohOf<double>;
 
 }  // namespace sandglass

@@ -49,6 +49,11 @@ struct Pack {
   template <std::floating_point S>
   requires(!std::same_as<S, T>) explicit Pack(S same) : Pack(static_cast<T>(same)) {}
 
+  /// Rounded.
+  template <class S>
+  requires(!std::same_as<S, T>) explicit Pack(const Pack<S, W>& other)
+      : lanes(__builtin_convertvector(other.lanes, Vector)) {}
+
   /// From the compiler's vector; a constructor would collide with the one from a number.
   static Pack of(Vector lanes) {
     Pack pack;
@@ -68,6 +73,14 @@ struct Pack {
   friend Pack max(Pack a, Pack b) { return select(a < b, b, a); }
   friend Pack min(Pack a, Pack b) { return select(b < a, b, a); }
   friend Pack abs(Pack a) { return select(a < Pack(T(0)), -a, a); }
+
+  /// Whether all are zero.
+  friend bool is_zero(Pack a) {
+    for (int l = 0; l < W; ++l) {
+      if (a.lanes[l] != T(0)) return false;
+    }
+    return true;
+  }
 
   /// A loop over the lanes, compiled to one instruction because math functions do not set errno.
   friend Pack sqrt(Pack a) {

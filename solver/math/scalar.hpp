@@ -17,6 +17,7 @@ template <std::floating_point T> T sqrt(T x) { return std::sqrt(x); }
 template <std::floating_point T> T abs(T x) { return std::abs(x); }
 template <std::floating_point T> T max(T a, T b) { return std::max(a, b); }
 template <std::floating_point T> T min(T a, T b) { return std::min(a, b); }
+template <std::floating_point T> bool is_zero(T x) { return x == T(0); }
 // clang-format on
 
 namespace detail {

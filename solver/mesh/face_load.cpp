@@ -1,7 +1,9 @@
 #include "mesh/face_load.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <map>
 
 namespace sandglass {
 
@@ -11,27 +13,63 @@ std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& 
   return corners;
 }
 
-std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners) {
+namespace {
+
+/// The shape functions of the four nodes of a face and their derivatives, at a Gauss point.
+struct FaceShape {
+  std::array<double, 4> N, by_xi, by_eta;
+};
+
+std::array<FaceShape, 4> shapes_at_gauss_points() {
   constexpr std::array<std::array<double, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   const double a = 1.0 / std::sqrt(3.0);
-  std::array<FacePoint, 4> result;
+  std::array<FaceShape, 4> shapes{};
   for (std::size_t q = 0; q < 4; ++q) {
     const double xi = a * signs[q][0], eta = a * signs[q][1];
-    Triple<double> X{}, along_xi{}, along_eta{};
     for (std::size_t I = 0; I < 4; ++I) {
       const auto [s, t] = signs[I];
-      const Triple<double> X_I{corners[I]};
-      result[q].N[I] = (1.0 + s * xi) * (1.0 + t * eta) / 4.0;
-      X += result[q].N[I] * X_I;
-      along_xi += (s * (1.0 + t * eta) / 4.0) * X_I;
-      along_eta += (t * (1.0 + s * xi) / 4.0) * X_I;
+      shapes[q].N[I] = (1.0 + s * xi) * (1.0 + t * eta) / 4.0;
+      shapes[q].by_xi[I] = s * (1.0 + t * eta) / 4.0;
+      shapes[q].by_eta[I] = t * (1.0 + s * xi) / 4.0;
     }
-    const Triple<double> normal = cross(along_xi, along_eta);
-    result[q].X = X;
-    result[q].normal = normal;
-    result[q].area = std::sqrt(double_dot(normal, normal));
   }
-  return result;
+  return shapes;
+}
+
+}  // namespace
+
+std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners) {
+  std::array<Triple<double>, 4> x;
+  for (std::size_t I = 0; I < 4; ++I) x[I] = {corners[I]};
+  return gauss_points_of(x);
+}
+
+Triple<double> interpolated(const std::array<double, 4>& N, const std::array<Vector, 4>& nodal) {
+  Triple<double> mean{};
+  for (std::size_t I = 0; I < 4; ++I) mean += N[I] * Triple<double>{nodal[I]};
+  return mean;
+}
+
+void add_at_corners(double factor, const std::array<Vector, 4>& own, const Quadrilateral& face,
+                    NodalField& field) {
+  for (std::size_t I = 0; I < 4; ++I) {
+    for (std::size_t i = 0; i < 3; ++i) field[at(face[I])][i] += factor * own[I][i];
+  }
+}
+
+std::array<Vector, 4> derivatives_of_pressure_power(const std::array<Vector, 4>& x,
+                                                    const std::array<Vector, 4>& w) {
+  std::array<Vector, 4> derivatives{};
+  for (const auto& [N, by_xi, by_eta] : shapes_at_gauss_points()) {
+    const Triple<double> v = interpolated(N, w);  // the power is -v . (dx/dxi x dx/deta)
+    const Triple<double> by_x_xi = cross(interpolated(by_eta, x), v),
+                         by_x_eta = cross(v, interpolated(by_xi, x));
+    for (std::size_t I = 0; I < 4; ++I) {
+      for (std::size_t i = 0; i < 3; ++i)
+        derivatives[I][i] -= by_xi[I] * by_x_xi.entries[i] + by_eta[I] * by_x_eta.entries[i];
+    }
+  }
+  return derivatives;
 }
 
 std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x) {
@@ -50,6 +88,53 @@ std::vector<Quadrilateral> faces_within(std::vector<Quadrilateral> faces, const 
                 [&](const Quadrilateral& face) { return !std::all_of(face.begin(), face.end(), inside); });
   return faces;
 }
+
+namespace {
+
+/// Integrals over faces that determine the power of a traction: of 1, X, X X^T, the velocity w and X x w.
+template <class T>
+struct FaceSums {
+  T area;
+  Triple<T> X;
+  Tensor<T> XX;
+  Triple<T> w, Xw;
+};
+
+/// Those of a face whose nodes have the velocities v, with positions from an origin.
+template <class T>
+FaceSums<T> sums_of(const std::array<FacePointOf<T>, 4>& points, const std::array<Vector, 4>& v,
+                    const Triple<T>& origin) {
+  FaceSums<T> sums{};
+  for (const auto& point : points) {
+    const Triple<T> X = point.X - origin, w = from_double<T>(interpolated(point.N, v));
+    sums.area = sums.area + point.area;
+    sums.X += point.area * X;
+    sums.XX += point.area * (X * transpose(X));
+    sums.w += point.area * w;
+    sums.Xw += point.area * cross(X, w);
+  }
+  return sums;
+}
+
+/// A traction a + b x (X - c); see consistent_loads.
+template <class T>
+struct Traction {
+  Triple<T> a, b, c;
+
+  Traction(const FaceSums<T>& sums, const Vector& total, const Vector& moment) {
+    const T per_area = T(1) / sums.area;
+    a = per_area * from_double<T>(Triple<double>{total});
+    c = per_area * sums.X;
+    const Tensor<T> J = sums.XX - sums.area * (c * transpose(c));
+    b = inverse(trace(J) * identity<T>() - J) * from_double<T>(Triple<double>{moment});
+  }
+
+  T power(const FaceSums<T>& sums) const {
+    return double_dot(a, sums.w) + double_dot(b, sums.Xw - cross(c, sums.w));
+  }
+};
+
+}  // namespace
 
 std::vector<NodalLoad> consistent_loads(const NodalField& points, const std::vector<Quadrilateral>& faces,
                                         const Vector& total, const Vector& moment) {
@@ -85,6 +170,37 @@ std::vector<NodalLoad> consistent_loads(const NodalField& points, const std::vec
   loads.reserve(forces.size());
   for (const auto& [node, force] : forces) loads.push_back({.node = node, .force = force});
   return loads;
+}
+
+void add_slopes_of_loads(double factor, const NodalField& points, const std::vector<Quadrilateral>& faces,
+                         const Vector& total, const Vector& moment, const NodalField& v, NodalField& slopes) {
+  constexpr std::size_t count = sizeof(FaceSums<double>) / sizeof(double);
+  using Numbers = std::array<double, count>;
+  using Duals = std::array<Dual<double>, count>;
+  const Triple<double> origin{points[at(faces.front()[0])]};
+  Duals sums{};
+  for (const auto& face : faces) {
+    const auto own = std::bit_cast<Numbers>(
+        sums_of(gauss_points_of(corners_of(points, face)), corners_of(v, face), origin));
+    for (std::size_t k = 0; k < count; ++k) sums[k].value += own[k];
+  }
+  Numbers by_sums;
+  for (std::size_t k = 0; k < count; ++k) {
+    sums[k].slope = 1.0;
+    const auto moved = std::bit_cast<FaceSums<Dual<double>>>(sums);
+    by_sums[k] = Traction(moved, total, moment).power(moved).slope;
+    sums[k].slope = 0.0;
+  }
+  for (const auto& face : faces) {
+    const auto power = [&](const auto& of_face) {
+      const auto own =
+          std::bit_cast<Duals>(sums_of(of_face, corners_of(v, face), from_double<Dual<double>>(origin)));
+      Dual<double> sum;
+      for (std::size_t k = 0; k < count; ++k) sum = sum + Dual<double>(by_sums[k]) * own[k];
+      return sum;
+    };
+    add_at_corners(factor, slopes_by_corners(corners_of(points, face), power), face, slopes);
+  }
 }
 
 }  // namespace sandglass

@@ -87,6 +87,7 @@ void make_constraints(const Case& description, Scene& scene) {
       const auto paths = turning_paths(turned, points[at(node)], center, angle);
       for (int i = 0; i < 3; ++i) impose({node, i, paths[at(i)]}, turned.set);
     }
+    scene.turned.push_back({nodes, turned.axis, angle, !turned.center});
     drive(turned.set);
   }
   for (const auto& [at_node, origin] : imposed) {

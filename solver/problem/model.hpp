@@ -35,6 +35,11 @@ class Model {
   std::vector<LoadRates> load_rates_;
 };
 
+/// The elements of a model in double precision.
+inline const InternalForce<double>& double_elements(const Model& model) {
+  return *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
+}
+
 /// Internal nodal forces (N) of a model at displacements u (m), reached in one step.
 NodalField internal_forces(const Model& model, const NodalField& u);
 

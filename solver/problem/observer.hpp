@@ -54,6 +54,10 @@ class Observer {
 
   virtual void history(const HistoryRow& /*row*/) {}
 
+  /// Called after every step of a dynamic run with the time (s) at its end and its size (s). If steps proved
+  /// too long, times start again at the last check.
+  virtual void stepped(double /*time*/, double /*size*/) {}
+
   /// The next time (s) for which a dynamic run should report displacements; infinite: none.
   virtual double next_sample() const { return std::numeric_limits<double>::infinity(); }
 

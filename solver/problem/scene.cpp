@@ -68,12 +68,13 @@ Scene on_part(const Scene& whole, const MeshPart& part) {
   Scene scene = whole;
   // A new field does not compile until it is named here; fields of the mesh are cut to the part.
   auto& [settings, case_hash, mesh_hash, mesh, ties, coarser, boundary, sets, element_sets, materials,
-         constraints, driven, angles, curves, forces, attached_masses, initial_velocities] = scene;
+         constraints, driven, angles, turned, curves, forces, attached_masses, initial_velocities] = scene;
   std::vector<int> element_there(mesh.cells.size(), -1);
   for (std::size_t e = 0; e < part.element_of.size(); ++e)
     element_there[at(part.element_of[e])] = static_cast<int>(e);
   mesh = part.mesh;
   coarser.clear();
+  turned.clear();
   boundary = faces_in(part, whole.boundary);
   renumber(sets, part.part_of);
   renumber(element_sets, element_there);
@@ -98,6 +99,7 @@ Scene on_part(const Scene& whole, const MeshPart& part) {
 Scene with_load(Scene scene, const std::vector<double>& imposed, double time, double load_factor) {
   scene.case_hash.clear();
   scene.angles = {0.0};
+  scene.turned.clear();
   for (std::size_t k = 0; k < imposed.size(); ++k) {
     const auto& [node, component, path, group] = scene.constraints[k];
     scene.constraints[k] = {node, component, {{imposed[k]}}};

@@ -30,6 +30,14 @@ struct DrivenSet {
   std::vector<std::size_t> constraints;  ///< of its nodes
 };
 
+/// A node set that turns about an axis, whose paths follow from the positions of its nodes.
+struct TurnedSet {
+  std::vector<int> nodes;
+  Vector axis;        ///< of length one
+  std::size_t angle;  ///< index into the scene's angles
+  bool about_mean;    ///< the axis passes through the mean of the nodes, else through a fixed point
+};
+
 /// The problem that solvers take: a case resolved on its mesh. `make_scene` makes it from a case, the
 /// functions below from another scene.
 struct Scene {
@@ -46,6 +54,7 @@ struct Scene {
   std::vector<Constraint> constraints;  ///< sorted by node, then component
   std::vector<DrivenSet> driven;        ///< sets with an imposed displacement, then rotated sets
   std::vector<double> angles;           ///< rad, of paths; the first is zero, for straight paths
+  std::vector<TurnedSet> turned;        ///< the rotated sets, for derivatives by positions
   std::vector<LoadCurve> curves;        ///< of forces; the first is the case's
   BodyForces forces;
   std::vector<double> attached_masses;  ///< of nodes, kg, beside those of elements; empty: none

@@ -33,9 +33,10 @@ void require_supported(const Scene& scene) {
             "a batch takes the step of its stiffest element; set subcycles = 1 and body_frequency = 0");
 }
 
-/// Throws InputError, which lists the methods that have such kernels, if this one has none.
+/// Makes the elements of a pack of bodies. Throws InputError, which lists the methods that have such kernels,
+/// if this one has none.
 template <class Number>
-std::unique_ptr<BatchForce<Number>> make_batch_force(const Model& model) {
+AssembleBatch<Number>* batch_force_of(const Model& model) {
   const auto kernel = [](const MethodEntry& method) {
     if constexpr (std::is_same_v<Number, Pack<double>>)
       return method.packed_double.assemble_batch;
@@ -44,10 +45,7 @@ std::unique_ptr<BatchForce<Number>> make_batch_force(const Model& model) {
   };
   require_supported(model.scene());
   const MethodChoice& choice = model.choice();
-  if (const auto assemble = kernel(method_named(choice.method))) {
-    return assemble(model.scene().mesh, model.scene().materials,
-                    {.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus});
-  }
+  if (const auto assemble = kernel(method_named(choice.method))) return assemble;
   std::vector<std::string_view> known;
   for (const MethodEntry& method : methods()) {
     if (kernel(method) != nullptr) known.push_back(method.name);
@@ -69,15 +67,16 @@ class Batch<Real>::Parts {
  public:
   Parts(Scene scene, std::size_t bodies, const SimulationSettings& settings)
       : problem_(std::move(scene), settings, precision_of<Real>),
-        elements_(make_batch_force<Number>(problem_.model())),
+        assemble_(batch_force_of<Number>(problem_.model())),
+        elements_(assembled({&this->scene().materials, 1})),
         clock_{.damping = problem_.damping()},
         longest_step_(problem_.damping()),
         frequency_squares_(bodies) {
     if (bodies == 0) throw InputError("bodies = 0 must be at least 1");
     const Number zero(Real(0));
     const Numbers of_rows(3 * elements_->layout().rows(), zero), of_constraints(constraints().size(), zero);
-    packs_.assign((bodies + lanes - 1) / lanes,
-                  {of_rows, of_rows, of_rows, of_constraints, of_constraints, zero, zero, Number(Real(1))});
+    packs_.assign((bodies + lanes - 1) / lanes, {elements_, of_rows, of_rows, of_rows, of_constraints,
+                                                 of_constraints, zero, zero, Number(Real(1))});
     inverse_masses_.resize(of_rows.size());
     const NodalField& v = this->scene().initial_velocities;
     for (std::size_t n = 0; n < elements_->layout().nodes; ++n) {
@@ -107,6 +106,40 @@ class Batch<Real>::Parts {
     set_lane(side(body).stiffness, body, factor);
     evaluate_forces(side(body), step_at(0.0, {}));
     choose_step();
+  }
+
+  void set_parameters(std::span<const std::map<std::string, std::vector<double>>> of_materials) {
+    std::vector<Materials> own = materials_;
+    own.resize(packs_.size() * lanes, scene().materials);
+    const std::size_t known = scene().materials.list.size();
+    if (of_materials.size() != known) {
+      throw InputError(fmt::format("materials: {} were given; it must be one for each of the {} of the case",
+                                   of_materials.size(), known));
+    }
+    for (std::size_t m = 0; m < known; ++m) {
+      for (const auto& [name, values] : of_materials[m]) {
+        if (values.size() == size()) continue;
+        throw InputError(
+            fmt::format("material {}: {} has {} values; it must be one for each of the {} bodies", m, name,
+                        values.size(), size()));
+      }
+      for (std::size_t b = 0; b < size(); ++b) {
+        std::map<std::string, double> of_body;
+        for (const auto& [name, values] : of_materials[m]) of_body[name] = values[b];
+        AnyLaw& law = own[b].list[m].law;
+        law = with_parameters(law, of_body, fmt::format("material {}, body {}", m, b));
+      }
+    }
+    std::vector<std::shared_ptr<const BatchForce<Number>>> elements;
+    for (std::size_t p = 0; p < packs_.size(); ++p)
+      elements.push_back(assembled(std::span(own).subspan(p * lanes, lanes)));
+    materials_ = std::move(own);
+    for (std::size_t p = 0; p < packs_.size(); ++p) {
+      packs_[p].elements = std::move(elements[p]);
+      evaluate_forces(packs_[p], step_at(0.0, {}));
+    }
+    undeformed_step_ = 0.0;
+    check();
   }
 
   /// displacement(n): of the n-th node of the set, m.
@@ -157,6 +190,7 @@ class Batch<Real>::Parts {
  private:
   /// The bodies of one pack.
   struct Side {
+    std::shared_ptr<const BatchForce<Number>> elements;
     Numbers u;           // m
     Numbers increment;   // m, in the last step
     Numbers force;       // internal forces minus loads, N, over the stiffness
@@ -175,6 +209,12 @@ class Batch<Real>::Parts {
 
   const Scene& scene() const { return problem_.scene(); }
   const std::vector<Constraint>& constraints() const { return problem_.scene().constraints; }
+
+  /// The elements of as many bodies as there are materials, or of a pack with the same.
+  std::shared_ptr<const BatchForce<Number>> assembled(std::span<const Materials> bodies) const {
+    const MethodChoice& choice = problem_.model().choice();
+    return assemble_(scene().mesh, bodies, {.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus});
+  }
 
   std::size_t at(std::size_t node, std::size_t component) const {
     return 3 * static_cast<std::size_t>(elements_->layout().row_of_node[node]) + component;
@@ -217,7 +257,7 @@ class Batch<Real>::Parts {
   }
 
   void evaluate_forces(Side& pack, const Step& step) const {
-    elements_->evaluate(pack.u, pack.force);
+    pack.elements->evaluate(pack.u, pack.force);
     const Number factor = Number(step.share) * pack.factor_to + Number(1.0 - step.share) * pack.factor_from;
     for (const auto& dead : scene().forces) {
       for (const NodalLoad& load : dead->dead_loads()) {
@@ -234,7 +274,7 @@ class Batch<Real>::Parts {
   void check() {
     std::vector<typename BatchForce<Number>::Extremes> extremes(packs_.size());
     in_parallel(packs_.size(), problem_.model().choice().threads,
-                [&](std::size_t p) { extremes[p] = elements_->extremes(packs_[p].u); });
+                [&](std::size_t p) { extremes[p] = packs_[p].elements->extremes(packs_[p].u); });
     for (std::size_t b = 0; b < size(); ++b) {
       const double jacobian = lane(extremes[b / lanes].jacobian, b);
       if (!is_healthy(jacobian)) {
@@ -262,7 +302,9 @@ class Batch<Real>::Parts {
   }
 
   const DrivenProblem problem_;
-  std::unique_ptr<BatchForce<Number>> elements_;
+  AssembleBatch<Number>* const assemble_;
+  std::shared_ptr<const BatchForce<Number>> elements_;  // of bodies with the materials of the case
+  std::vector<Materials> materials_;                    // of each body and empty lane, if they differ
   LeapfrogClock clock_;
   SteadyStep longest_step_;
   double undeformed_step_ = 0.0;  // s, of a body with the stiffness of the case
@@ -289,6 +331,11 @@ Batch<Real>::~Batch() = default;
 template <class Real>
 void Batch<Real>::scale_stiffness(std::size_t body, double factor) {
   parts_->scale_stiffness(body, factor);
+}
+
+template <class Real>
+void Batch<Real>::set_parameters(std::span<const std::map<std::string, std::vector<double>>> of_materials) {
+  parts_->set_parameters(of_materials);
 }
 
 template <class Real>

@@ -5,10 +5,10 @@
 namespace sandglass {
 
 /// Many bodies of one case that move side by side, in `double` or `float`: for identification, training data
-/// and studies of uncertainty. They share mesh, materials, method, damping and step; each has its own
-/// stiffness, driven nodes and forces. A register holds one body in each lane, 8 in double and 16 in float
-/// with AVX-512, so that nothing is gathered (`sandglass bench --bodies`); empty lanes cost as much as full
-/// ones.
+/// and studies of uncertainty. They share mesh, kinds of laws, densities, method, damping and step; each has
+/// its own stiffness, parameters of laws, driven nodes and forces. A register holds one body in each lane, 8
+/// in double and 16 in float with AVX-512, so that nothing is gathered (`sandglass bench --bodies`); empty
+/// lanes cost as much as full ones.
 ///
 /// Supported are methods that declare `batches`, isotropic elastic laws, imposed displacements, dead forces
 /// and initial velocities. Steps follow from the stiffest element of all bodies; see Simulation.
@@ -31,6 +31,12 @@ class Batch {
 
   /// Multiplies all moduli of the case by `factor` for one body. The step adapts immediately.
   void scale_stiffness(std::size_t body, double factor);
+
+  /// Replaces parameters of the laws of all bodies: for each material of the case, by the name of a parameter
+  /// of its law, a value for each body. Others stay as they are. Throws InputError that names the material,
+  /// the parameter, value and rule. An element then has constants for each body, which take as much more
+  /// memory.
+  void set_parameters(std::span<const std::map<std::string, std::vector<double>>> of_materials);
 
   /// Sets the targets of a body's driven nodes in a set for the next `advance`; see Simulation::move.
   void move(std::size_t body, const std::string& set, const std::array<double, 3>& displacement);

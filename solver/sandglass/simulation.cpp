@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "io/case_file.hpp"
+#include "io/checkpoint_file.hpp"
+#include "mesh/hash.hpp"
 #include "sandglass/driven_problem.hpp"
 #include "solve/adaption.hpp"
 #include "solve/health.hpp"
@@ -95,6 +97,22 @@ class Simulation<Real>::Parts {
     return answer.steps;
   }
 
+  void save(const std::filesystem::path& file) {
+    RunSoFar run;
+    keep(CheckpointWriter(run.point));
+    keep_targets(CheckpointWriter(run.point));
+    write_checkpoint_file(file, identity(), run);
+  }
+
+  void resume(const std::filesystem::path& file) {
+    const Mesh& mesh = scene().mesh;
+    const RunSoFar run = read_checkpoint_file(file, identity(), mesh.points.size(), mesh.cells.size());
+    keep(CheckpointReader(run.point));
+    keep_targets(CheckpointReader(run.point));
+    leapfrog_.body().set_step(longest_step_.step());
+    keep(StateCopy(whole_));
+  }
+
  private:
   /// Keeps the levels of the elements and the reactions of the last frame.
   struct LastFrame final : Observer {
@@ -124,7 +142,8 @@ class Simulation<Real>::Parts {
     for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
     factor_ = share * factor_to_ + rest * factor_from_;
     leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed_, factor_, leapfrog_.time()); });
-    return leapfrog_.step() % scene().settings.dynamics.check_interval != 0 || check();
+    const bool last = !(share < 1.0), due = leapfrog_.step() % scene().settings.dynamics.check_interval == 0;
+    return !(due || (last && !is_finite(body()))) || check();
   }
 
   /// False as in `take`.
@@ -174,6 +193,29 @@ class Simulation<Real>::Parts {
     longest_step_.keep(archive);
     archive("imposed", imposed_);
     archive("factor", factor_);
+  }
+
+  /// Where the driven nodes and forces go in the next `advance`, and from where.
+  template <class Archive>
+  void keep_targets(Archive archive) {
+    archive("from", from_);
+    archive("to", to_);
+    archive("factor_from", factor_from_);
+    archive("factor_to", factor_to_);
+  }
+
+  /// What a saved state must agree with: the model, and what else decides about steps and the order of rows.
+  Identity identity() const {
+    Identity all = identity_of(model());
+    const auto& dynamics = scene().settings.dynamics;
+    all.emplace_back("damping", fmt::to_string(problem_->damping()));
+    all.emplace_back("steps",
+                     fmt::format("{} of the stable one, {} subcycles, checked every {}",
+                                 problem_->step_fraction(), dynamics.subcycles, dynamics.check_interval));
+    const std::vector<int>& rows = leapfrog_.body().layout().row_of_node;
+    all.emplace_back("rows",
+                     hash_of({reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(int)}));
+    return all;
   }
 
   void choose_step() {
@@ -246,6 +288,16 @@ void Simulation<Real>::advance(double seconds) {
 template <class Real>
 long Simulation<Real>::settle() {
   return parts_->settle();
+}
+
+template <class Real>
+void Simulation<Real>::save(const std::filesystem::path& file) const {
+  parts_->save(file);
+}
+
+template <class Real>
+void Simulation<Real>::resume(const std::filesystem::path& file) {
+  parts_->resume(file);
 }
 
 template <class Real>

@@ -88,10 +88,10 @@ class Simulation {
 
   /// Advances by `seconds`, in equal steps of at most `step_size()`; driven nodes and forces change linearly
   /// to their targets. n steps are `advance(n * step_size())`. Every check_interval steps (of the case) it
-  /// looks for inverted elements and NaN, and adapts the step to the present stiffness of the body.
-  /// ComputationError names the time and the failed elements, by their numbers in the mesh; the body is then
-  /// back at the last check (at `time()`), with the driven nodes and forces of that time until you set new
-  /// targets, and you may continue with a smaller motion.
+  /// looks for inverted elements and NaN, and adapts the step to the present stiffness of the body; at the
+  /// end it looks for NaN. ComputationError names the time and the failed elements, by their numbers in the
+  /// mesh; the body is then back at the last check (at `time()`), with the driven nodes and forces of that
+  /// time until you set new targets, and you may continue with a smaller motion.
   void advance(double seconds);
 
   /// Moves the body to its static equilibrium with driven nodes and forces at their new values, and stops it
@@ -100,6 +100,14 @@ class Simulation {
   /// elements' history is as after a single step. Returns the number of evaluations of the internal forces.
   /// Throws ComputationError if no equilibrium is found; the body is then as it was.
   long settle();
+
+  /// Writes the present state and the targets of driven nodes to a file, which is replaced as a whole or not
+  /// at all. Throws InputError or ComputationError if that fails.
+  void save(const std::filesystem::path& file) const;
+
+  /// Takes the state that `save` wrote, from which the same program moves on with the same bits. Throws
+  /// InputError for a damaged file, and for one of another case, mesh or settings, with the differences.
+  void resume(const std::filesystem::path& file);
 
   double time() const;       ///< s
   double step_size() const;  ///< s, the longest step at present

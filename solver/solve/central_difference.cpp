@@ -13,22 +13,13 @@
 #include "solve/frame.hpp"
 #include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
+#include "solve/loading_curve.hpp"
 #include "solve/stable_step.hpp"
 #include "solve/steady_step.hpp"
 
 namespace sandglass {
 
 namespace {
-
-/// The paper's loading curve (eq. 15) over relative time: from 0 to 1, with zero velocity and acceleration at
-/// both ends; and its derivatives with respect to relative time.
-struct LoadingCurve {
-  explicit constexpr LoadingCurve(double relative_time) : t(std::clamp(relative_time, 0.0, 1.0)) {}
-  constexpr double value() const { return t * t * t * (10.0 + t * (-15.0 + t * 6.0)); }
-  constexpr double rate() const { return 30.0 * t * t * (1.0 - t) * (1.0 - t); }
-  constexpr double acceleration() const { return 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t); }
-  double t;
-};
 
 /// Displacements (m) at the share s of a step of h seconds, interpolated from displacements and velocities
 /// (m/s) at its ends: of third order, so that reported motions do not depend on the positions of the steps.
@@ -213,7 +204,7 @@ class CentralDifference {
     for (const Constraint& constraint : model_.scene().constraints) {
       const ImposedPath& path = constraint.path;
       const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], now.value()));
-      v[at(constraint.node)][at(constraint.component)] = now.rate() / ramp_time() * by_factor;
+      v[at(constraint.node)][at(constraint.component)] = now.rate() / ramp_time(settings_) * by_factor;
     }
     follow(model_.scene().ties, v);
     return v;
@@ -233,8 +224,7 @@ class CentralDifference {
     next_step_ = left / std::max(1.0, std::ceil(left / steady_step_.step() - rounding));
   }
 
-  double ramp_time() const { return settings_.ramp_time > 0.0 ? settings_.ramp_time : settings_.duration; }
-  LoadingCurve curve(double time) const { return LoadingCurve(time / ramp_time()); }
+  LoadingCurve curve(double time) const { return loading_curve(settings_, time); }
 
   /// Updates the changes of the terms of paths over the last step, from one load factor to the next, and
   /// their second derivatives with respect to relative time.
@@ -258,7 +248,7 @@ class CentralDifference {
 
   /// The force (N) that accelerates the lumped mass of a driven component.
   double inertia(const Constraint& constraint) const {
-    const double mass = model_.masses()[at(constraint.node)], T = ramp_time();
+    const double mass = model_.masses()[at(constraint.node)], T = ramp_time(settings_);
     double force = 0.0;
     for (std::size_t i = 0; i < 3; ++i)
       force += mass * constraint.path.share[i] * accelerations_[constraint.path.angle][i];
@@ -360,6 +350,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   if (alone) keep(StateCopy(sound));
   while (!scheme.finished() && !motion.interrupted) {
     const bool sampled = scheme.advance(observer);
+    observer.stepped(scheme.time(), scheme.step_size());
     scheme.add_external_work();
     motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
     motion.most_substeps = std::max(motion.most_substeps, body.substeps());

@@ -32,6 +32,16 @@ bool is_healthy(const Body<Real>& body) {
   return !body.layout().team.ranks->any(!healthy);
 }
 
+template <class Real>
+bool is_finite(const Body<Real>& body) {
+  const Rows<Real>& u = body.state().u;
+  const Real* number = numbers_of(u);
+  Real sum = 0;  // not zero if a number is not finite
+#pragma omp simd reduction(+ : sum)
+  for (std::size_t k = 0; k < 4 * u.size(); ++k) sum += Real(0) * number[k];
+  return sum == Real(0);
+}
+
 void require_healthy(std::span<const double> jacobians, long step) {
   std::string listed;
   int ill = 0;
@@ -74,6 +84,8 @@ void require_not_passed(const Touch& touch, const NodalField& points, long step)
 
 template bool is_healthy(const Body<double>&);
 template bool is_healthy(const Body<float>&);
+template bool is_finite(const Body<double>&);
+template bool is_finite(const Body<float>&);
 template void require_healthy(const Body<double>&, long);
 template void require_healthy(const Body<float>&, long);
 

@@ -13,6 +13,10 @@ bool is_healthy(double jacobian);
 template <class Real>
 bool is_healthy(const Body<Real>& body);
 
+/// Whether all displacements of a body are finite, which costs much less.
+template <class Real>
+bool is_finite(const Body<Real>& body);
+
 /// Throws ComputationError if an element is inverted or its det F is not finite; the error names the step,
 /// the first ten such elements with det F, and a remedy. `jacobians` are the smallest det F of each element.
 void require_healthy(std::span<const double> jacobians, long step);

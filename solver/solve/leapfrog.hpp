@@ -49,6 +49,9 @@ class Leapfrog {
   Body<Real>& body() { return body_; }
   const Body<Real>& body() const { return body_; }
 
+  /// Of nodes (1/kg), zero on constrained components and tied nodes.
+  const Rows<Real>& inverse_masses() const { return inverse_masses_; }
+
   /// See Body::subcycle.
   void subcycle(const Model& model) { body_.subcycle(model, inverse_masses_); }
 

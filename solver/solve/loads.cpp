@@ -94,6 +94,25 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
 }
 
 template <class Real>
+void Loads<Real>::subtract_derivatives_of_power(const State<Real>& state, const Rows<Real>& w,
+                                                Rows<Real>& by_u, Rows<Real>& by_increment) const {
+  if (all_dead_) return;
+  const Rows<double> u = loaded(state.u), increment = loaded(state.increment), v = loaded(w);
+  Rows<double> of_u(rows_.size()), of_increment(rows_.size());
+  const NodalMotion motion{by_node(u.data()), by_node(increment.data()), static_cast<double>(state.step)};
+  for (const auto* one : loads_) {
+    one->add_derivatives_of_power(factors_, motion, by_node(v.data()), by_node(of_u.data()),
+                                  by_node(of_increment.data()));
+  }
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      by_u[rows_[k]][i] -= static_cast<Real>(of_u[k][i]);
+      by_increment[rows_[k]][i] -= static_cast<Real>(of_increment[k][i]);
+    }
+  }
+}
+
+template <class Real>
 bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses, double gain) {
   if (!moves_nodes_) return false;
   take(state.u, u_);

@@ -18,6 +18,11 @@ class Loads {
   /// Evaluates the loads of a state and subtracts them from its forces (N).
   void subtract(const State<Real>& state, Rows<Real>& force);
 
+  /// Subtracts the derivatives of the power of the loads at velocities w, by displacements and by increments;
+  /// see BodyForce::add_derivatives_of_power.
+  void subtract_derivatives_of_power(const State<Real>& state, const Rows<Real>& w, Rows<Real>& by_u,
+                                     Rows<Real>& by_increment) const;
+
   /// Lets obstacles move nodes within a step; see ContactForce::push_out. Returns whether there are such
   /// obstacles.
   bool push_out(State<Real>& state, const Rows<Real>& inverse_masses, double gain);

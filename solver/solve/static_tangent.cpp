@@ -18,8 +18,14 @@ namespace {
 /// rounding allows no less.
 constexpr double solved = 1e-9, acceptable = 1e-7;
 
-/// A correction reduces the residual to about this share, more would be lost in the differences of forces.
-constexpr double share_left = 1e-4;
+/// A correction reduces the residual to this share at least, more would be lost in the differences of forces;
+/// the last one only as far as the problem needs.
+constexpr double least_share = 1e-4;
+
+/// A residual below this share that has not halved in so many cycles may have reached the rounding of answers
+/// in single precision: the next correction starts from the exact residual.
+constexpr double may_be_rounding = 1e-2;
+constexpr int cycles_to_halve = 4;
 
 constexpr int most_corrections = 30, most_cycles = 120, most_products = 2000;
 
@@ -27,20 +33,13 @@ constexpr int most_corrections = 30, most_cycles = 120, most_products = 2000;
 /// curve as lambda / mu times this, and lambda / mu times double precision, over this, is their rounding.
 constexpr double change = 2e-7;
 
-/// The largest displacement over the size of the body in differences of loads, which are almost linear.
-constexpr double change_for_loads = 1e-5;
-
-const InternalForce<double>& elements_of(const Model& model) {
-  return *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
-}
-
 }  // namespace
 
 StaticTangent::StaticTangent(const Model& model, const NodalField& u, std::vector<double> levels)
-    : model_(model), u_(u), levels_(std::move(levels)), mixed_(model, elements_of(model)) {
+    : model_(model), u_(u), levels_(std::move(levels)), mixed_(model, double_elements(model)) {
   Body<double>& body = mixed_.body();
-  body.state() = state_at(elements_of(model), u_);
-  if (!levels_.empty()) elements_of(model).set_levels(body.state(), levels_);
+  body.state() = state_at(double_elements(model), u_);
+  if (!levels_.empty()) double_elements(model).set_levels(body.state(), levels_);
   body.impose(1.0);
   mixed_.linearize();
   mixed_.weigh();
@@ -55,27 +54,10 @@ StaticTangent::StaticTangent(const Model& model, const NodalField& u, std::vecto
 void StaticTangent::add_stiffness_of_loads(const Rows<double>& a, Rows<double>& forces) const {
   const Scene& scene = model_.scene();
   if (first_not_dead(scene.forces) == nullptr) return;
-  double largest = 0.0;
-  for (const auto& row : a) {
-    for (std::size_t i = 0; i < 3; ++i) largest = std::max(largest, std::abs(row[i]));
-  }
-  if (!(largest > 0.0)) return;
   Loads<double> loads(scene, layout());
   loads.set(1.0, 1.0);
-  double diameter = 0.0;
-  for (const Vector& X : scene.mesh.points) diameter = std::max(diameter, distance(X, scene.mesh.points[0]));
-  const double length = change_for_loads * diameter / largest;
-  State<double> state = state_;
-  for (const double side : {1.0, -1.0}) {
-    for (std::size_t row = 0; row < a.size(); ++row) {
-      for (std::size_t i = 0; i < 3; ++i) state.u[row][i] = state_.u[row][i] + side * length * a[row][i];
-    }
-    Rows<double> load(a.size());
-    loads.subtract(state, load);
-    for (std::size_t row = 0; row < a.size(); ++row) {
-      for (std::size_t i = 0; i < 3; ++i) forces[row][i] += side / (2.0 * length) * load[row][i];
-    }
-  }
+  Rows<double> by_increment(a.size());  // none without time
+  loads.subtract_derivatives_of_power(state_, a, forces, by_increment);
 }
 
 NodalField StaticTangent::product(const NodalField& a) const {
@@ -129,8 +111,15 @@ NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
   Rows<double> b = to_rows<double>(handed_on(b_at_nodes), layout());
   mixed_.body().constraints().clear(b);
   Rows<double> a(b.size());
+  double unit_force = 0.0;  // with which no square overflows
+  for (const auto& row : b)
+    unit_force = std::max({unit_force, std::abs(row[0]), std::abs(row[1]), std::abs(row[2])});
+  if (!(unit_force > 0.0)) return to_field(a, layout());
+  const auto multiply = [](Rows<double>& rows, double factor) {
+    for (auto& row : rows) row = {{factor * row[0], factor * row[1], factor * row[2]}};
+  };
+  multiply(b, 1.0 / unit_force);
   const double first = norm(b);
-  if (!(first > 0.0)) return to_field(a, layout());
   Rows<double> r = b;
   double size = first;
   for (int k = 0; k < most_corrections && size > solved * first; ++k) {
@@ -138,7 +127,7 @@ NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
     for (std::size_t row = 0; row < r.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) unit.u[row][i] = static_cast<float>(r[row][i] / size);
     }
-    const MixedVector x = correction(unit);
+    const MixedVector x = correction(unit, std::max(least_share, 0.5 * solved * first / size));
     Rows<double> next = a;
     for (std::size_t row = 0; row < a.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) next[row][i] += size * static_cast<double>(x.u[row][i]);
@@ -165,11 +154,13 @@ NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
     throw ComputationError(
         "the equilibrium is unstable: its stiffness is negative along the answer of the linear problem");
   }
+  multiply(a, unit_force);
   return to_field(a, layout());
 }
 
-MixedVector StaticTangent::correction(const MixedVector& r) {
-  return method_named(model_.choice().method).pressure_varies ? conjugate(r) : accelerated(r);
+MixedVector StaticTangent::correction(const MixedVector& r, double share_left) {
+  return method_named(model_.choice().method).pressure_varies ? conjugate(r, share_left)
+                                                              : accelerated(r, share_left);
 }
 
 MixedVector StaticTangent::mixed_product(const MixedVector& x) {
@@ -188,7 +179,7 @@ MixedVector StaticTangent::mixed_product(const MixedVector& x) {
 }
 
 /// Anderson's acceleration of the multigrid cycle, for displacements and pressures.
-MixedVector StaticTangent::accelerated(const MixedVector& r) {
+MixedVector StaticTangent::accelerated(const MixedVector& r, double share_left) {
   const MixedVector zero = mixed_.multigrid().elements().zero();
   MixedVector x = zero, b = r, best = zero, left, step, change_of_x;
   mixed_.weigh(b);
@@ -196,8 +187,10 @@ MixedVector StaticTangent::accelerated(const MixedVector& r) {
   multiply(-1.0F, left, blocks());
   Acceleration acceleration(blocks());
   const double first = std::sqrt(dot(b, b, blocks()));
-  double least = first;
-  for (int k = 0; k < most_cycles && least > share_left * first; ++k) {
+  double least = first, halved = first;
+  int waited = 0;
+  const auto stagnates = [&] { return waited == cycles_to_halve && halved < may_be_rounding * first; };
+  for (int k = 0; k < most_cycles && least > share_left * first && !stagnates(); ++k) {
     step = zero;
     acceleration.combine(left, step);
     change_of_x = left;
@@ -212,6 +205,11 @@ MixedVector StaticTangent::accelerated(const MixedVector& r) {
     if (size < least) {
       least = size;
       best = x;
+    }
+    waited = std::min(waited + 1, cycles_to_halve);
+    if (size < 0.5 * halved) {
+      halved = size;
+      waited = 0;
     }
   }
   return best;
@@ -233,7 +231,7 @@ Rows<float> StaticTangent::difference_product(const MixedVector& x) {
 }
 
 /// Conjugate gradients for displacements alone, where an element has more than one pressure.
-MixedVector StaticTangent::conjugate(MixedVector r) {
+MixedVector StaticTangent::conjugate(MixedVector r, double share_left) {
   MixedVector x = mixed_.multigrid().elements().zero(), z = x, d = x, q = x;
   double rz = 0.0, first = 0.0;
   for (int k = 0; k < most_products; ++k) {

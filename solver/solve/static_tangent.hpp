@@ -38,7 +38,7 @@ class StaticTangent {
   const Layout& layout() const { return mixed_.body().layout(); }
   const MixedBlocks& blocks() const { return mixed_.multigrid().elements().blocks(); }
 
-  /// Adds the stiffness of forces other than dead ones, times a.
+  /// Adds the stiffness of forces other than dead ones, which is symmetric as they have a potential, times a.
   void add_stiffness_of_loads(const Rows<double>& a, Rows<double>& forces) const;
 
   /// b - K a on free components.
@@ -47,10 +47,10 @@ class StaticTangent {
   /// The norm of forces in the weights of the preconditioner, a root of J.
   double norm(const Rows<double>& forces) const;
 
-  /// An approximate answer for `r`, whose norm is one.
-  MixedVector correction(const MixedVector& r);
-  MixedVector accelerated(const MixedVector& r);
-  MixedVector conjugate(MixedVector r);
+  /// An approximate answer for `r`, whose norm is one, that leaves a share of it.
+  MixedVector correction(const MixedVector& r, double share_left);
+  MixedVector accelerated(const MixedVector& r, double share_left);
+  MixedVector conjugate(MixedVector r, double share_left);
 
   /// Weighted K x of both unknowns, or K x (N) of displacements alone, by a difference of forces.
   MixedVector mixed_product(const MixedVector& x);

@@ -77,7 +77,16 @@ class Body:
         against: Literal["truth"] | None = ...,
         **method: float | str | None,
     ) -> Solution: ...
-    def simulation(self, **settings: Any) -> Simulation: ...
+    def simulation(
+        self,
+        *,
+        precision: Literal["double", "float"] = ...,
+        method: str | None = ...,
+        kappa: float | None = ...,
+        damping: float | None = ...,
+        step_fraction: float = ...,
+        threads: int = ...,
+    ) -> Simulation: ...
     def batch(
         self,
         bodies: int,
@@ -124,6 +133,7 @@ class Solution:
         displacement: ArrayLike | None = ...,
         reactions: Mapping[str, ArrayLike] | None = ...,
         *,
+        materials: bool = ...,
         points: bool = ...,
     ) -> Gradient: ...
     def sensitivity(
@@ -140,18 +150,22 @@ class Solution:
     def save(self, file: _Path) -> None: ...
 
 class Gradient:
-    materials: tuple[dict[str, Any], ...]
+    materials: tuple[dict[str, Any], ...] | None
     stiffness: _Doubles
     forces: _Doubles
     imposed: _Doubles
     points: _Doubles | None
+    velocities: _Doubles | None
+    damping: float | None
     def __init__(
         self,
-        materials: tuple[dict[str, Any], ...],
+        materials: tuple[dict[str, Any], ...] | None,
         stiffness: _Doubles,
         forces: _Doubles,
         imposed: _Doubles,
         points: _Doubles | None,
+        velocities: _Doubles | None = ...,
+        damping: float | None = ...,
     ) -> None: ...
 
 class Simulation:
@@ -185,6 +199,8 @@ class Simulation:
     def impose(self, factor: float) -> None: ...
     def advance(self, seconds: float) -> None: ...
     def settle(self) -> int: ...
+    def save_checkpoint(self, file: _Path) -> None: ...
+    def resume(self, file: _Path) -> None: ...
     def reaction(self, set: str) -> _Doubles: ...
     def nodes(self, set: str) -> NDArray[int32]: ...
     def copy(self) -> Simulation: ...
@@ -201,11 +217,14 @@ class Simulation:
     @property
     def step_size(self) -> float: ...
 
+_OfBodies = Mapping[str, ArrayLike] | Sequence[Mapping[str, ArrayLike]]
+
 class Batch:
     bodies: int
-    def __init__(self, batch: Any, bodies: int) -> None: ...
+    def __init__(self, batch: Any, bodies: int, laws: Any) -> None: ...
     def __len__(self) -> int: ...
     def scale_stiffness(self, factors: ArrayLike) -> None: ...
+    def set_parameters(self, materials: _OfBodies) -> None: ...
     def impose(self, factors: ArrayLike) -> None: ...
     def move(self, set: str, displacements: ArrayLike) -> None: ...
     def advance(self, seconds: float) -> None: ...
@@ -215,6 +234,7 @@ class Batch:
         frames: int,
         *,
         stiffness: ArrayLike | None = ...,
+        materials: _OfBodies | None = ...,
         factors: ArrayLike | None = ...,
         driven: Mapping[str, ArrayLike] | None = ...,
     ) -> _Doubles: ...

@@ -75,4 +75,6 @@ def text(name, value):
     """A text. Raises TypeError that names it."""
     if not isinstance(value, str):
         raise TypeError(f"{name} must be a text, but is a {type(value).__name__}")
+    if not _encodable(value):
+        raise TypeError(f"{name} must be a text that UTF-8 can hold")
     return value

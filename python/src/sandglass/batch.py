@@ -3,21 +3,21 @@
 import numpy as np
 
 import _sandglass
-from sandglass.arguments import integer, number, real_array
+from sandglass.arguments import integer, number, real_array, text
 
 
 class Batch:
     """Many bodies of one case that move side by side, from `Body.batch`.
 
-    They share mesh, laws, method, damping and step; each has its own stiffness, driven nodes and
-    load factor, which are arrays with a row for each body. Results are those of an `sg.Simulation`
-    of each body up to rounding: sums have another order. One number for all bodies will do
-    wherever an array (bodies,) is expected. Raises InputError and TypeError, and ComputationError,
-    which names the body, if elements are inverted.
+    They share mesh, kinds of laws, densities, method, damping and step; each has its own stiffness,
+    parameters of laws, driven nodes and load factor, which are arrays with a row for each body.
+    Results are those of an `sg.Simulation` of each body up to rounding: sums have another order.
+    One number for all bodies will do wherever an array (bodies,) is expected. Raises InputError and
+    TypeError, and ComputationError, which names the body, if elements are inverted.
     """
 
-    def __init__(self, batch, bodies):
-        self._batch = batch
+    def __init__(self, batch, bodies, laws):
+        self._batch, self._laws = batch, laws
         self.bodies = bodies  #: their number
 
     def __len__(self):
@@ -26,6 +26,21 @@ class Batch:
     def scale_stiffness(self, factors):
         """Multiplies all moduli of the case by a positive factor for each body, (bodies,)."""
         self._batch.scale_stiffness(self._positive("factors", factors))
+
+    def set_parameters(self, materials):
+        """Parameters of the laws of each body, in place of the case's. The step adapts.
+
+        A dict for each material of the body, in their order, or one dict for a body of one
+        material: from parameters, as `help(sg.NeoHookean)` lists them, to arrays (bodies,), or
+        (bodies, elements) where the law of the case has an array for its elements. Others stay as
+        they are. Raises InputError that names material, body, value and rule.
+        """
+        materials = [materials] if hasattr(materials, "items") else materials
+        if not isinstance(materials, (list, tuple)):
+            kind = type(materials).__name__
+            raise TypeError(f"materials must be a list of dicts, but is a {kind}")
+        given = [self._parameters(m, each) for m, each in enumerate(materials)]
+        self._batch.set_parameters(self._laws.of_bodies(given))
 
     def impose(self, factors):
         """Loads and imposed displacements at a load factor of each body, (bodies,).
@@ -40,7 +55,7 @@ class Batch:
 
         (3,) for all bodies, (bodies, 3), or (bodies, nodes of the set, 3).
         """
-        given = real_array("displacements", displacements)
+        given, set = real_array("displacements", displacements), text("set", set)
         if given.shape == (3,):
             given = np.tile(given, (self.bodies, 1))
         shapes = [(self.bodies, 3), (self.bodies, len(self.nodes(set)), 3)]
@@ -53,16 +68,16 @@ class Batch:
 
         Every `check_interval` steps (of `sg.Dynamics`) inverted elements and NaN are looked for.
         """
-        self._batch.advance(seconds)
+        self._batch.advance(number("seconds", seconds))
 
-    def run(self, seconds, frames, *, stiffness=None, factors=None, driven=None):
+    def run(self, seconds, frames, *, stiffness=None, materials=None, factors=None, driven=None):
         """Moves all bodies through a number of equal frames; returns displacements, m.
 
-        `stiffness`: factors of all moduli, (bodies,). `factors`: load factors, (bodies,), which are
+        `stiffness`: factors of all moduli, (bodies,). `materials`: parameters of laws, arrays
+        (bodies,); see `set_parameters`. `factors`: load factors, (bodies,), which are
         reached linearly at the end, or (bodies, frames), at the end of each frame; without them no
         load acts. `driven`: a dict from driven sets to targets at the end of each frame, (bodies,
-        frames, 3) or (bodies, frames, nodes of the set, 3), m. Other parameters of laws are the
-        same for all bodies.
+        frames, 3) or (bodies, frames, nodes of the set, 3), m.
 
         Returns an array (bodies, frames, n, 3), in the numbering of the mesh.
         """
@@ -73,6 +88,8 @@ class Batch:
             raise TypeError(f"driven must be a dict, but is a {type(driven).__name__}")
         targets = {name: self._targets(name, rows, frames) for name, rows in (driven or {}).items()}
         course = None if factors is None else self._course(factors, frames)
+        if materials is not None:
+            self.set_parameters(materials)
         if stiffness is not None:
             self._batch.scale_stiffness(self._positive("stiffness", stiffness))
         found = []
@@ -92,11 +109,11 @@ class Batch:
 
     def reaction(self, set):
         """The forces that hold or drive a set of nodes, N; (bodies, 3)."""
-        return self._batch.reactions(set)
+        return self._batch.reactions(text("set", set))
 
     def nodes(self, set):
         """The nodes of a set, sorted."""
-        return self._batch.nodes(set)
+        return self._batch.nodes(text("set", set))
 
     @property
     def time(self):
@@ -118,6 +135,20 @@ class Batch:
         if numbers.shape != (self.bodies,):
             _refuse_shape(name, [f"({self.bodies},)"], numbers)
         return numbers
+
+    def _parameters(self, m, given):
+        """The parameters of a material, arrays (bodies,) or (bodies, its elements)."""
+        if not hasattr(given, "items"):
+            raise TypeError(f"materials[{m}] must be a dict, but is a {type(given).__name__}")
+        found = {}
+        for name, values in given.items():
+            title = f"materials[{m}]: {text(f'a name in materials[{m}]', name)}"
+            values = real_array(title, values)
+            shape = self._laws.shape(m, name)
+            if values.ndim < 2 or values.shape != (self.bodies, *shape):
+                values = self._numbers(title, values)
+            found[name] = values
+        return found
 
     def _positive(self, name, given):
         numbers = self._numbers(name, given)

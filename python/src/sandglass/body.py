@@ -139,6 +139,8 @@ class Body:
                     "against: needs the largest error allowed, such as accuracy='2%'"
                 )
             accuracy = quantity_text("accuracy", accuracy)
+        elif isinstance(method.get("accuracy"), str):
+            method["accuracy"] = _sandglass.share("accuracy", method["accuracy"])
         given = {
             "threads": threads,
             "device": device,
@@ -150,8 +152,19 @@ class Body:
             answer = _sandglass.solve(*self._mesh(), text, given, callback)
         return Solution(answer, self.name, self._element_laws())
 
-    def simulation(self, **settings):
-        """An `sg.Simulation` of the body, to move and advance; `settings` are its keywords."""
+    def simulation(
+        self,
+        *,
+        precision="double",
+        method=None,
+        kappa=None,
+        damping=None,
+        step_fraction=0.9,
+        threads=1,
+    ):
+        """An `sg.Simulation` of the body, to move and advance, with its keywords."""
+        settings = {"precision": precision, "method": method, "kappa": kappa, "damping": damping}
+        settings |= {"step_fraction": step_fraction, "threads": threads}
         points, cells, sets, element_sets = self._mesh()
         text = toml_text(self._case_tables())
         return _sandglass.Simulation.of_mesh(
@@ -179,7 +192,7 @@ class Body:
         given = {"bodies": bodies, "precision": precision, "method": method, "kappa": kappa}
         given |= {"damping": damping, "step_fraction": step_fraction, "threads": threads}
         text = toml_text(self._case_tables())
-        return Batch(_sandglass.Batch(*self._mesh(), text, given), bodies)
+        return Batch(_sandglass.Batch(*self._mesh(), text, given), bodies, self._element_laws())
 
     def save(self, file):
         """Writes the case file and, unless a generator or a file makes the mesh, its .h5."""

@@ -82,6 +82,24 @@ class ElementLaws:
                 )
         return found
 
+    def shape(self, m, key):
+        """The shape of a parameter of a material: (its elements,) if it is an array, else ()."""
+        keys, _, count = self._parts[m] if m < len(self._parts) else ((), 0, 0)
+        return (count,) if key in keys else ()
+
+    def of_bodies(self, parameters):
+        """Parameters (bodies,) of each law from those of each material, (bodies, ...)."""
+        if len(parameters) != len(self._parts):
+            raise _sandglass.InputError(
+                f"materials: {len(parameters)} were given; it must be one for each of the "
+                f"{len(self._parts)} of the body"
+            )
+        return [
+            {key: column[:, n] if column.ndim == 2 else column for key, column in given.items()}
+            for (_, _, count), given in zip(self._parts, parameters)
+            for n in range(count)
+        ]
+
 
 def _varies(material, key):
     declared = material._keys[key]

@@ -5,7 +5,7 @@ import os
 import numpy as np
 
 import _sandglass
-from sandglass.arguments import integer, number, path_text, text
+from sandglass.arguments import integer, number, path_text, real_array, text
 from sandglass.gradient import Gradient
 
 
@@ -103,22 +103,31 @@ class Solution:
         """
         return self._answer.estimate(text("against", against))
 
-    def gradient(self, displacement=None, reactions=None, *, points=False):
-        """The derivatives of a scalar J of this static answer by all that it depends on.
+    def gradient(self, displacement=None, reactions=None, *, materials=True, points=False):
+        """The derivatives of a scalar J of this answer by all that it depends on.
 
-        `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to dJ/dR, (3,).
-        `points`: whether also by the undeformed positions of nodes, which takes longer. One
-        adjoint problem for all parameters together, which costs about as much as `solve`. Dead
-        loads and springs may act. Levels of adaptive elements count as constant.
+        Of a static answer: `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to
+        dJ/dR, (3,). `points`: whether also by the undeformed positions of nodes, which takes
+        longer. One adjoint problem for all parameters together, which costs about as much as
+        `solve`. Dead loads and springs may act. Levels of adaptive elements count as constant.
 
-        Returns an `sg.Gradient`. Raises InputError with `points` where gravity, forces on faces or
-        springs act, as these depend on the positions; where forces have no potential (Updated
-        Lagrangian methods, pressures), with obstacles, in single precision and for motions;
-        ComputationError for an answer that is not stable.
+        Of a motion: `displacement`: dJ/du at all frames, (frames, n, 3). The steps are computed
+        again and followed back, each as it was: the derivative is that of the computed motion at
+        constant steps. Memory grows as the root of their number. `materials`: whether also by the
+        parameters of laws, which takes half of the time or more.
+
+        Returns an `sg.Gradient`. Raises InputError where the forces of elements have no potential
+        (Updated Lagrangian methods), with obstacles, in single precision; for static answers with
+        pressures; for motions with viscoelastic laws, subcycles, tl-adaptive, and by reactions or
+        points; ComputationError for a static answer that is not stable.
         """
-        reactions = {} if reactions is None else reactions
-        found = self._answer.gradient(displacement, reactions, points)
-        found["materials"] = self._laws.gathered(found["materials"])
+        reactions = _weights({} if reactions is None else reactions)
+        for name, value in {"materials": materials, "points": points}.items():
+            if not isinstance(value, (bool, np.bool_)):
+                raise TypeError(f"{name} must be True or False, but is a {type(value).__name__}")
+        found = self._answer.gradient(displacement, reactions, materials, points)
+        if materials:
+            found["materials"] = self._laws.gathered(found["materials"])
         return Gradient(**{key: _fixed(value) for key, value in found.items()})
 
     def sensitivity(self, materials=None, *, forces=None, imposed=None):
@@ -134,8 +143,7 @@ class Solution:
             materials = []
         elif hasattr(materials, "items"):
             materials = [materials]
-        if isinstance(materials, (list, tuple)):
-            materials = self._laws.spread(materials)
+        materials = self._laws.spread(_changes(materials))
         return _fixed(self._answer.sensitivity(materials, forces, imposed))
 
     def to_vtk(self, frame=-1):
@@ -180,6 +188,35 @@ class Solution:
         largest = np.linalg.norm(self.displacement, axis=1).max()
         frames = f"{len(self)} frames"
         return f"<sg.Solution of {self.name}: {frames}, largest displacement {largest:.4g} m>"
+
+
+def _weights(reactions):
+    """A dict from driven sets to derivatives (3,). Raises TypeError and InputError."""
+    if not hasattr(reactions, "items"):
+        kind = type(reactions).__name__
+        raise TypeError(f"reactions must be a dict from sets to arrays (3,), but is a {kind}")
+    found = {}
+    for name, weights in reactions.items():
+        name = text("a name in reactions", name)
+        weights = real_array(f"reactions: '{name}'", weights)
+        if weights.shape != (3,):
+            raise _sandglass.InputError(
+                f"reactions: '{name}' must have the shape (3,), but has {weights.shape}"
+            )
+        found[name] = weights
+    return found
+
+
+def _changes(materials):
+    """A list of dicts from parameters to numbers. Raises TypeError."""
+    if not isinstance(materials, (list, tuple)):
+        raise TypeError(f"materials must be a list of dicts, but is a {type(materials).__name__}")
+    for m, change in enumerate(materials):
+        if not hasattr(change, "items"):
+            raise TypeError(f"materials[{m}] must be a dict, but is a {type(change).__name__}")
+        for name, value in change.items():
+            real_array(f"materials[{m}]: {text(f'a name in materials[{m}]', name)}", value)
+    return materials
 
 
 def _fixed(value):

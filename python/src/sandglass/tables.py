@@ -93,6 +93,8 @@ def plain(name, value):
         return [plain(name, entry) for entry in value]
     if isinstance(value, int) and not isinstance(value, bool) and not -(2**63) <= value < 2**63:
         raise TypeError(f"{name} = {value} must be in [-2^63, 2^63)")
+    if isinstance(value, str) and any("\ud800" <= letter <= "\udfff" for letter in value):
+        raise TypeError(f"{name} must be a text that UTF-8 can hold")
     if isinstance(value, (bool, int, float, str)):
         return value
     raise TypeError(
