@@ -47,9 +47,8 @@ AssembleBatch<Number>* batch_force_of(const Model& model) {
   const MethodChoice& choice = model.choice();
   if (const auto assemble = kernel(method_named(choice.method))) return assemble;
   std::vector<std::string_view> known;
-  for (const MethodEntry& method : methods()) {
+  for (const MethodEntry& method : methods())
     if (kernel(method) != nullptr) known.push_back(method.name);
-  }
   throw InputError(fmt::format("method = '{}' does not run in a batch; choose one of {}", choice.method,
                                fmt::join(known, ", ")));
 }
@@ -113,15 +112,14 @@ class Batch<Real>::Parts {
     own.resize(packs_.size() * lanes, scene().materials);
     const std::size_t given = of_materials.size(), known = scene().materials.list.size();
     if (given != known)
-      throw InputError(fmt::format("materials: {} were given; it must be one for each of the {} of the case",
-                                   given, known));
+      throw InputError(
+          fmt::format("materials: {} were given; it must be one for each of the {}", given, known));
     for (std::size_t m = 0; m < known; ++m) {
-      for (const auto& [name, values] : of_materials[m]) {
+      for (const auto& [name, values] : of_materials[m])
         if (values.size() != size())
           throw InputError(
               fmt::format("material {}: {} has {} values; it must be one for each of the {} bodies", m, name,
                           values.size(), size()));
-      }
       for (std::size_t b = 0; b < size(); ++b) {
         std::map<std::string, double> of_body;
         for (const auto& [name, values] : of_materials[m]) of_body[name] = values[b];
@@ -246,9 +244,8 @@ class Batch<Real>::Parts {
       pack.u[n] = pack.u[n] + pack.increment[n];
     }
     const Number share(step.share), rest(1.0 - step.share);
-    for (std::size_t k = 0; k < constrained_.size(); ++k) {
+    for (std::size_t k = 0; k < constrained_.size(); ++k)
       pack.u[constrained_[k]] = share * pack.to[k] + rest * pack.from[k];
-    }
     evaluate_forces(pack, step);
   }
 
