@@ -41,7 +41,7 @@ class FacePressures final : public BodyForce {
       for (std::size_t I = 0; I < 4; ++I) {
         for (std::size_t i = 0; i < 3; ++i) velocities[I][i] = w[faces_[k][I]][i];
       }
-      const auto unit = derivatives_of_pressure_power(corners(k, motion.u), velocities);
+      const auto unit = slopes_of_power(corners(k, motion.u), velocities);
       for (std::size_t I = 0; I < 4; ++I) {
         for (std::size_t i = 0; i < 3; ++i) by_u[faces_[k][I]][i] += p * unit[I][i];
       }
@@ -66,13 +66,7 @@ class FacePressures final : public BodyForce {
       const auto v = corners_of(shape.v, face), u = corners_of(shape.u, face);
       auto x = corners_of(shape.points, face);
       for (std::size_t I = 0; I < 4; ++I) x[I] = sandglass::sum(x[I], 1.0, u[I]);
-      const auto power = [&](const auto& points) {
-        Dual<double> sum;
-        for (const auto& point : points)
-          sum = sum - double_dot(from_double<Dual<double>>(interpolated(point.N, v)), point.normal);
-        return sum;
-      };
-      add_at_corners(factors[curve_] * value_, slopes_by_corners(x, power), face, shape.by_points);
+      add_at_corners(factors[curve_] * value_, slopes_of_power(x, v), face, shape.by_points);
     }
   }
 
@@ -109,6 +103,17 @@ class FacePressures final : public BodyForce {
   }
 
  private:
+  /// The derivatives by the corners x of a face of the power of `pressure_forces` at velocities v.
+  static std::array<Vector, 4> slopes_of_power(const std::array<Vector, 4>& x,
+                                               const std::array<Vector, 4>& v) {
+    return slopes_by_corners(x, [&](const auto& points) {
+      Dual<double> sum;
+      for (const auto& point : points)
+        sum = sum - double_dot(from_double<Dual<double>>(interpolated(point.N, v)), point.normal);
+      return sum;
+    });
+  }
+
   /// The current corners (m) of the k-th face.
   std::array<Vector, 4> corners(std::size_t k, NodalRows u) const {
     std::array<Vector, 4> x = corners_[k];

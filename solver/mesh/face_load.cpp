@@ -13,31 +13,6 @@ std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& 
   return corners;
 }
 
-namespace {
-
-/// The shape functions of the four nodes of a face and their derivatives, at a Gauss point.
-struct FaceShape {
-  std::array<double, 4> N, by_xi, by_eta;
-};
-
-std::array<FaceShape, 4> shapes_at_gauss_points() {
-  constexpr std::array<std::array<double, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-  const double a = 1.0 / std::sqrt(3.0);
-  std::array<FaceShape, 4> shapes{};
-  for (std::size_t q = 0; q < 4; ++q) {
-    const double xi = a * signs[q][0], eta = a * signs[q][1];
-    for (std::size_t I = 0; I < 4; ++I) {
-      const auto [s, t] = signs[I];
-      shapes[q].N[I] = (1.0 + s * xi) * (1.0 + t * eta) / 4.0;
-      shapes[q].by_xi[I] = s * (1.0 + t * eta) / 4.0;
-      shapes[q].by_eta[I] = t * (1.0 + s * xi) / 4.0;
-    }
-  }
-  return shapes;
-}
-
-}  // namespace
-
 std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners) {
   std::array<Triple<double>, 4> x;
   for (std::size_t I = 0; I < 4; ++I) x[I] = {corners[I]};
@@ -55,21 +30,6 @@ void add_at_corners(double factor, const std::array<Vector, 4>& own, const Quadr
   for (std::size_t I = 0; I < 4; ++I) {
     for (std::size_t i = 0; i < 3; ++i) field[at(face[I])][i] += factor * own[I][i];
   }
-}
-
-std::array<Vector, 4> derivatives_of_pressure_power(const std::array<Vector, 4>& x,
-                                                    const std::array<Vector, 4>& w) {
-  std::array<Vector, 4> derivatives{};
-  for (const auto& [N, by_xi, by_eta] : shapes_at_gauss_points()) {
-    const Triple<double> v = interpolated(N, w);  // the power is -v . (dx/dxi x dx/deta)
-    const Triple<double> by_x_xi = cross(interpolated(by_eta, x), v),
-                         by_x_eta = cross(v, interpolated(by_xi, x));
-    for (std::size_t I = 0; I < 4; ++I) {
-      for (std::size_t i = 0; i < 3; ++i)
-        derivatives[I][i] -= by_xi[I] * by_x_xi.entries[i] + by_eta[I] * by_x_eta.entries[i];
-    }
-  }
-  return derivatives;
 }
 
 std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x) {

@@ -16,10 +16,6 @@ struct NodalLoad {
 /// da, exact.
 std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x);
 
-/// The derivatives by the corners x of the power of `pressure_forces` at the constant velocities w.
-std::array<Vector, 4> derivatives_of_pressure_power(const std::array<Vector, 4>& x,
-                                                    const std::array<Vector, 4>& w);
-
 /// A Gauss point of a face: the shape functions of its four nodes, its position (m), and its share of the
 /// area (m^2).
 template <class T>

@@ -47,9 +47,8 @@ AssembleBatch<Number>* batch_force_of(const Model& model) {
   const MethodChoice& choice = model.choice();
   if (const auto assemble = kernel(method_named(choice.method))) return assemble;
   std::vector<std::string_view> known;
-  for (const MethodEntry& method : methods()) {
+  for (const MethodEntry& method : methods())
     if (kernel(method) != nullptr) known.push_back(method.name);
-  }
   throw InputError(fmt::format("method = '{}' does not run in a batch; choose one of {}", choice.method,
                                fmt::join(known, ", ")));
 }
@@ -111,18 +110,16 @@ class Batch<Real>::Parts {
   void set_parameters(std::span<const std::map<std::string, std::vector<double>>> of_materials) {
     std::vector<Materials> own = materials_;
     own.resize(packs_.size() * lanes, scene().materials);
-    const std::size_t known = scene().materials.list.size();
-    if (of_materials.size() != known) {
-      throw InputError(fmt::format("materials: {} were given; it must be one for each of the {} of the case",
-                                   of_materials.size(), known));
-    }
+    const std::size_t given = of_materials.size(), known = scene().materials.list.size();
+    if (given != known)
+      throw InputError(
+          fmt::format("materials: {} were given; it must be one for each of the {}", given, known));
     for (std::size_t m = 0; m < known; ++m) {
-      for (const auto& [name, values] : of_materials[m]) {
-        if (values.size() == size()) continue;
-        throw InputError(
-            fmt::format("material {}: {} has {} values; it must be one for each of the {} bodies", m, name,
-                        values.size(), size()));
-      }
+      for (const auto& [name, values] : of_materials[m])
+        if (values.size() != size())
+          throw InputError(
+              fmt::format("material {}: {} has {} values; it must be one for each of the {} bodies", m, name,
+                          values.size(), size()));
       for (std::size_t b = 0; b < size(); ++b) {
         std::map<std::string, double> of_body;
         for (const auto& [name, values] : of_materials[m]) of_body[name] = values[b];
@@ -130,12 +127,9 @@ class Batch<Real>::Parts {
         law = with_parameters(law, of_body, fmt::format("material {}, body {}", m, b));
       }
     }
-    std::vector<std::shared_ptr<const BatchForce<Number>>> elements;
-    for (std::size_t p = 0; p < packs_.size(); ++p)
-      elements.push_back(assembled(std::span(own).subspan(p * lanes, lanes)));
     materials_ = std::move(own);
     for (std::size_t p = 0; p < packs_.size(); ++p) {
-      packs_[p].elements = std::move(elements[p]);
+      packs_[p].elements = assembled(std::span(materials_).subspan(p * lanes, lanes));
       evaluate_forces(packs_[p], step_at(0.0, {}));
     }
     undeformed_step_ = 0.0;
@@ -250,9 +244,8 @@ class Batch<Real>::Parts {
       pack.u[n] = pack.u[n] + pack.increment[n];
     }
     const Number share(step.share), rest(1.0 - step.share);
-    for (std::size_t k = 0; k < constrained_.size(); ++k) {
+    for (std::size_t k = 0; k < constrained_.size(); ++k)
       pack.u[constrained_[k]] = share * pack.to[k] + rest * pack.from[k];
-    }
     evaluate_forces(pack, step);
   }
 
@@ -307,9 +300,8 @@ class Batch<Real>::Parts {
   std::vector<Materials> materials_;                    // of each body and empty lane, if they differ
   LeapfrogClock clock_;
   SteadyStep longest_step_;
-  double undeformed_step_ = 0.0;  // s, of a body with the stiffness of the case
-  std::vector<double>
-      frequency_squares_;  // 1/s^2, of each body at the last check and the stiffness of the case
+  double undeformed_step_ = 0.0;           // s, of a body with the stiffness of the case
+  std::vector<double> frequency_squares_;  // 1/s^2, of each body at the last check and factor one
   std::vector<Side> packs_;
   std::vector<Real> inverse_masses_;      // 1/kg, of each component; zero on constrained ones
   std::vector<std::size_t> constrained_;  // components, in the order of the scene's constraints
