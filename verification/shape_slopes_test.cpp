@@ -129,7 +129,8 @@ const std::multimap<std::string_view, Add> samples{
      [](auto& forces) {
        forces.template of<Support>().push_back({"side", 20.0, 30.0, true});
      }},
-    {"obstacle", [](auto& forces) {
+    {"obstacle",
+     [](auto& forces) {
        Obstacle wall;
        wall.label = "wall";
        wall.set = "side";
@@ -137,6 +138,12 @@ const std::multimap<std::string_view, Add> samples{
        wall.point = {2.0, 0.0, 0.0};
        wall.normal = {-1.0, 0.0, 0.0};
        forces.template of<Obstacle>().push_back(wall);
+     }},
+    {"contact", [](auto& forces) {
+       Contact itself;
+       itself.label = "itself";
+       itself.set = "side";
+       forces.template of<Contact>().push_back(itself);
      }}};
 
 /// A kind without a sample above, with numbers for all its parameters.
