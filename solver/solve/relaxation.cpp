@@ -31,8 +31,9 @@ class Search {
       : model_(model),
         elements_(elements),
         settings_(model.scene().settings.relaxation),
-        most_evaluations_(leaves_hourglass_modes(model.choice()) ? std::min(few_evaluations, settings_.max_steps)
-                                                   : settings_.max_steps),
+        most_evaluations_(leaves_hourglass_modes(model.choice())
+                              ? std::min(few_evaluations, settings_.max_steps)
+                              : settings_.max_steps),
         amplification_(largest_amplification(model.scene().materials)),
         observer_(observer),
         equilibrium_(model, elements),

@@ -20,9 +20,9 @@ Tensor<float> ResidualWeights::root(const Tensor<float>& D) {
     for (int i = j; i < 3; ++i) {
       float left = D(i, j);
       for (int k = 0; k < j; ++k) left -= L(i, k) * L(j, k);
-      L(i, j) = i == j             ? std::sqrt(std::max(left, least_pivot * D(i, i)))
+      L(i, j) = i == j           ? std::sqrt(std::max(left, least_pivot * D(i, i)))
                 : L(j, j) > 0.0f ? left / L(j, j)
-                                   : 0.0f;
+                                 : 0.0f;
     }
   }
   return L;

@@ -6,8 +6,8 @@
 
 namespace sandglass {
 
-/// Weights of residuals: L^T with L L^T = D for forces, the roots of mu / V for pressures. Weighted, both have
-/// the unit of a root of energy.
+/// Weights of residuals: L^T with L L^T = D for forces, the roots of mu / V for pressures. Weighted, both
+/// have the unit of a root of energy.
 class ResidualWeights {
  public:
   explicit ResidualWeights(const ElementLevel& level) : diagonal_(level.zero()) {}

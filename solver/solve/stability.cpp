@@ -20,9 +20,8 @@ std::string why_not_decided(const Model& model, bool depends_on_path) {
   // The softest motions are computed with less resistance to volume changes. Such a law does not separate
   // it, so the result would depend on the orientation.
   const auto splits = [](const Material& material) { return splits_volume(material.law); };
-  return std::ranges::all_of(model.scene().materials.list, splits)
-             ? ""
-             : "a law has no separate volumetric part";
+  return std::ranges::all_of(model.scene().materials.list, splits) ? ""
+                                                                   : "a law has no separate volumetric part";
 }
 
 }  // namespace sandglass
