@@ -156,6 +156,7 @@ def test_all_that_a_motion_depends_on(kind, method):
     assert not found.velocities[base].any()
     less = solution.gradient(of_u, materials=False)
     assert less.materials is None and np.array_equal(less.stiffness, found.stiffness)
+    assert repr(less) == "<sg.Gradient: materials []>"
 
 
 @pytest.mark.parametrize("velocity", [0.0, 0.3])

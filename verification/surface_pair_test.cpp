@@ -349,11 +349,12 @@ TEST(BoxTree, compares_few_of_many) {
 TEST(SurfacePair, names_what_is_wrong) {
   const NeoHookean law{.young_modulus = 1e4, .poisson_ratio = 0.3};
   constexpr auto kinematic = Contact::Method::kinematic;
-  const auto message = [&](double gap, const Contact& contact) {
+  const auto message = [&](double gap, const Contact& contact, std::vector<Refinement> refinements = {}) {
     TwoBodies bodies(box({1.0, 1.0, 0.5}, {2, 2, 2}),
                      moved(box({1.0, 1.0, 0.5}, {3, 3, 2}), {0.0, 0.0, 0.5 + gap}), law);
     bodies.sets["points"] = {0, 5};
     bodies.description.forces.of<Contact>() = {contact};
+    bodies.description.refinements = std::move(refinements);
     try {
       bodies.scene();
     } catch (const InputError& error) {
@@ -369,6 +370,10 @@ TEST(SurfacePair, names_what_is_wrong) {
   };
   expect(-0.03, pair_of("lower", "upper", kinematic), "is 0.03 m inside of what it may touch at the start");
   expect(0.0, pair_of("lower", "under", kinematic), "is on both surfaces, 'lower' and 'under'");
+  const std::vector<Refinement> corner{{.around = "points", .layers = 1}};  // leaves nodes that hang
+  const std::string hanging = message(0.01, pair_of("lower", "upper", kinematic), corner);
+  EXPECT_NE(hanging.find("follows others, by a tie or on a refined mesh"), std::string::npos) << hanging;
+  EXPECT_EQ(message(0.01, pair_of("lower", "upper", Contact::Method::penalty), corner), "");
   EXPECT_NE(message(0.0, pair_of("under", "points", kinematic))
                 .find("contact.other = 'points' has no boundary face"),
             std::string::npos);

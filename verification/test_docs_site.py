@@ -39,7 +39,7 @@ ANSWERS = {
     "Why does my mesh fold?": "Zigzags from node to node are hourglass modes",
     "What are the units?": "SI: m, s, kg, N, Pa",
     "Can it run on many machines?": "mpirun -n 2 build/mpi/sandglass run column",
-    "Does it do contact?": "Bodies do not touch each other or themselves",
+    "Does it do contact?": "a closed surface, which may move. In motions,",
 }
 
 

@@ -42,9 +42,12 @@ def test_every_golden_is_compared():
     assert all(record["distance"] < second_program.LIMIT for record in records)
 
 
-def loaded_block(stiff, only_normal):
-    """Two materials, weight, a pressure that follows, springs, a dead traction: all at once."""
-    points, cells, _ = distorted_block(n=2)
+def loaded_block(stiff, only_normal, weight):
+    """Two materials, a pressure that follows, springs, a dead traction and weight: all at once.
+
+    With weight the elements are parallelepipeds, where its integral is that of lumped masses.
+    """
+    points, cells, _ = distorted_block(n=2, distortion=0.0 if weight else 0.15)
     foot, top, side = points[:, 2] < 1e-9, points[:, 2] > 1 - 1e-9, points[:, 0] < 1e-9
     soft = dataclasses.replace(MATERIALS[0], density=1000.0)
     mesh = HexMesh(
@@ -54,8 +57,11 @@ def loaded_block(stiff, only_normal):
         (traction(points, cells, top, (10.0, 20.0, 30.0), (5.0, 0.0, 1.0)),),
         (points[cells].mean(axis=1)[:, 0] > 0.5).astype(int),
         (Surface(side, pressure=200.0), Surface(foot, stiffness=5e4, only_normal=only_normal)),
-        (Gravity((0.01, 0.02, -0.03)),),
+        (Gravity((0.01, 0.02, -0.03)),) if weight else (),
     )
+    if weight:  # slanted elements; the conditions above are on the cube's faces
+        slant = np.array([[1.0, 0.2, 0.1], [0.0, 1.0, 0.3], [0.0, 0.0, 1.0]])
+        mesh = dataclasses.replace(mesh, points=points @ slant.T)
     return mesh, [soft, stiff]
 
 
@@ -70,8 +76,9 @@ STIFF = Material("neo-hookean", {"young_modulus": 30000.0, "poisson_ratio": 0.3}
         (GetfemProblem, YEOH, False),
     ],
 )
-def test_materials_and_loads(program, stiff, only_normal):
-    mesh, materials = loaded_block(stiff, only_normal)
+@pytest.mark.parametrize("weight", [False, True])
+def test_materials_and_loads(program, stiff, only_normal, weight):
+    mesh, materials = loaded_block(stiff, only_normal, weight)
     answers = []
     for problem in (program(mesh, materials), MixedProblem(mesh, materials)):
         solve(problem, 2, 1e-12)

@@ -34,6 +34,13 @@ void Contact::resolve(ForceResolver& resolver) const {
                 "surfaces without common nodes, or one set without `other`, which may touch itself");
     }
   }
+  if (method == Method::kinematic && !resolver.tied.empty()) {
+    for (const int node : nodes_of(all)) {
+      if (!resolver.tied[at(node)]) continue;
+      refuse_at(node, "follows others, by a tie or on a refined mesh, which the kinematic method cannot move",
+                "method = 'penalty', or sets without such nodes");
+    }
+  }
   const ContactScale scale(resolver, all);
   const auto make = method == Method::penalty ? make_penalty_pair : make_kinematic_pair;
   auto pair = make(*this, {std::move(surfaces), scale.stiffness(penalty), scale.edge}, resolver.points,

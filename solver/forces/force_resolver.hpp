@@ -24,6 +24,7 @@ struct ForceResolver {
   std::vector<double> attached = {};  ///< share of `masses` that is not of elements; empty if there is none
   std::span<const Hexahedron> cells = {};
   std::vector<double> young_moduli = {};  ///< of elements, of the undeformed material, Pa
+  std::vector<bool> tied = {};            ///< whether a node follows others; empty: none
 
   /// The nodes of the set that a table names with a key. Throws InputError if there is no such set or it is
   /// empty.

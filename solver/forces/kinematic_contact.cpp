@@ -24,7 +24,7 @@ class KinematicContact final : public ObstacleContact {
     Row<double>&position = memory.others[0], &last_of_obstacle = memory.others[1];
     const Vector of_obstacle = difference(moved, {position[0], position[1], position[2]});
     memory.pushes = {};
-    for_each_gap(moved, nodes.u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
+    for_each_gap(moved, nodes.u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const int node = nodes_[k].node;
       Row<double>&last = memory.others[own + k], &increment = nodes.increment[node];
       Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
@@ -32,7 +32,7 @@ class KinematicContact final : public ObstacleContact {
         last = {{0.5 * motion[0], 0.5 * motion[1], 0.5 * motion[2], 0.0}};
       if (gap.distance < 0.0) {
         const Row<double>& w = nodes.inverse_masses[node];
-        const Vector change = correction(gap, motion, w);
+        const Vector change = correction(gap, direction(gap, difference(x, motion)), motion, w);
         motion = sum(motion, 1.0, change);
         for (std::size_t i = 0; i < 3; ++i) {
           if (!(w[i] > 0.0)) continue;
@@ -77,18 +77,28 @@ class KinematicContact final : public ObstacleContact {
     return make_kinematic_contact(std::move(nodes), obstacle_, shape_, curve_, start_);
   }
 
-  /// The change (m) of the motion of a node in a step that brings it to the surface, with friction; zero
-  /// where a component is constrained (w = 0).
-  Vector correction(const Gap& gap, const Vector& motion, const Row<double>& w) const {
-    Vector free = gap.normal;
+  /// The direction of the force on a node: the normal where the step starts, as forces act there. Over the
+  /// steps before and after it, a node that slides along a curve moves at right angles to it: the normal at
+  /// the end would push it on with every step. Across an edge of the obstacle only the latter is of use.
+  Vector direction(const Gap& end, const Vector& start) const {
+    constexpr double least_cosine = 0.5;
+    const Vector normal = gap_at(start).normal;
+    return dot(normal, end.normal) < least_cosine ? end.normal : normal;
+  }
+
+  /// The change (m) of the motion of a node in a step that brings it to the surface along a direction, with
+  /// friction; zero where a component is constrained (w = 0).
+  Vector correction(const Gap& gap, const Vector& direction, const Vector& motion,
+                    const Row<double>& w) const {
+    Vector free = direction;
     for (std::size_t i = 0; i < 3; ++i) free[i] = w[i] > 0.0 ? free[i] : 0.0;
-    const double share = dot(free, free);
+    const double share = dot(free, gap.normal);
     constexpr double least_share = 1e-6;
     if (share < least_share) return {};
     const double outwards = -gap.distance / share;
     Vector change = sum({}, outwards, free);
     if (obstacle_.friction == 0.0) return change;
-    const Vector along = sum(motion, -dot(motion, gap.normal), gap.normal);
+    const Vector along = sum(motion, -dot(motion, direction), direction);
     const double size = std::sqrt(dot(along, along)), most = obstacle_.friction * outwards;
     if (size > 0.0) change = sum(change, -std::min(1.0, most / size), along);
     for (std::size_t i = 0; i < 3; ++i) change[i] = w[i] > 0.0 ? change[i] : 0.0;

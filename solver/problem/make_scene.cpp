@@ -146,6 +146,13 @@ std::vector<double> young_moduli(const Mesh& mesh, const Materials& materials) {
   return of_elements;
 }
 
+/// Whether each node follows others.
+std::vector<bool> tied_nodes(const Scene& scene) {
+  std::vector<bool> tied(scene.mesh.points.size(), false);
+  for (const Tie& tie : scene.ties) tied[at(tie.node)] = true;
+  return tied;
+}
+
 /// Resolves the forces of the case, keeps their curves in the scene, and adds to the `masses` (kg) of nodes
 /// what is attached to them.
 void make_forces(const Case& description, Scene& scene, std::vector<double>& masses) {
@@ -155,7 +162,8 @@ void make_forces(const Case& description, Scene& scene, std::vector<double>& mas
                          .sets = scene.sets,
                          .masses = masses,
                          .cells = scene.mesh.cells,
-                         .young_moduli = young_moduli(scene.mesh, scene.materials)};
+                         .young_moduli = young_moduli(scene.mesh, scene.materials),
+                         .tied = tied_nodes(scene)};
   description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
   scene.forces = description.quasi_static ? at_rest(resolver.all()) : resolver.all();
   scene.curves = std::move(resolver.curves);

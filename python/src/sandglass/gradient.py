@@ -30,4 +30,4 @@ class Gradient:
         """By the damping of `sg.Dynamics`, s. None for a static answer."""
 
     def __repr__(self):
-        return f"<sg.Gradient: materials {list(self.materials)}>"
+        return f"<sg.Gradient: materials {list(self.materials or ())}>"
