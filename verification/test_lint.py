@@ -132,7 +132,13 @@ def test_a_change_is_tested_first_and_the_workflow_runs_what_is_there():
         return [line.split()[1:] for line in lines if line.startswith("bash ")]
 
     run = scripts(Path(ROOT / ".ci/run").read_text().splitlines())
-    assert run == [["ci/setup", "build"], ["ci/test"], ["ci/verify", "accuracy"], ["ci/lint"], ["ci/docs-site"]]
+    assert run == [
+        ["ci/setup", "build"],
+        ["ci/test"],
+        ["ci/verify", "accuracy"],
+        ["ci/lint"],
+        ["ci/docs-site"],
+    ]
     jobs = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text())["jobs"]
     steps = {name: scripts(s.get("run", "") for s in job["steps"]) for name, job in jobs.items()}
     assert steps["avx2"] == [["ci/test", "avx2"]]
