@@ -9,7 +9,6 @@
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "copied.hpp"
-#include "solve/law_parameters.hpp"
 
 namespace py = pybind11;
 
@@ -158,11 +157,8 @@ std::vector<std::vector<double>> Derivatives::parameters(
     const auto names = parameter_names(list[m].law);
     all.emplace_back(names.size(), 0.0);
     for (const auto& [name, change] : materials[m]) {
+      require_parameter(list[m].law, name, "materials");
       const auto place = std::find(names.begin(), names.end(), name);
-      if (place == names.end()) {
-        throw InputError(fmt::format("materials: '{}' is no parameter of '{}'; allowed: {}", name,
-                                     name_of(list[m].law), fmt::join(names, ", ")));
-      }
       require_finite("materials", name, change);
       all.back()[static_cast<std::size_t>(place - names.begin())] = change;
     }

@@ -164,7 +164,8 @@ Arguments with_defaults(const py::kwargs& given) {
                "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1);
   for (const auto& [name, value] : given) {
     if (!all.contains(name)) {
-      throw py::type_error(py::str(name).cast<std::string>() + " is no setting of a simulation; allowed: " +
+      throw py::type_error(py::str(name).cast<std::string>() +
+                           " is not a setting of a simulation; allowed: " +
                            py::str(", ").attr("join")(all).cast<std::string>());
     }
     all[name] = value;
@@ -282,8 +283,8 @@ PYBIND11_MODULE(_sandglass, m) {
             self.with([&](const auto& s) { s.save(file); });
           },
           "file"_a,
-          "Writes the state to a file, from which `resume` goes on in another process. The file is replaced "
-          "as a whole or not at all. Raises InputError and ComputationError if that fails.")
+          "Writes the state to a file, from which `resume` continues, also in another process. The file is "
+          "replaced as a whole or not at all. Raises InputError or ComputationError if that fails.")
       .def(
           "resume",
           [](AnySimulation& self, const py::object& given) {
@@ -292,8 +293,8 @@ PYBIND11_MODULE(_sandglass, m) {
           },
           "file"_a,
           "Takes the state that `save_checkpoint` of a simulation of the same case, mesh and settings wrote; "
-          "from there it moves with the same bits. Raises InputError for a damaged file, and for that of "
-          "another simulation, with the differences.")
+          "it continues with the same bits. Raises InputError for a damaged file and for one of another "
+          "simulation, with the differences.")
       .def(
           "reaction",
           [](AnySimulation& self, const py::object& given) {

@@ -199,7 +199,7 @@ def test_what_a_batch_cannot_is_refused_by_name():
         ),
         (
             lambda b: b.set_parameters({"mu": 1}),
-            "'mu' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson_ratio",
+            "'mu' is not a parameter of 'neo-hookean'; allowed: young_modulus, poisson_ratio",
         ),
         (lambda b: body().batch(0), r"bodies = 0 must be in \[1, 1000000\]"),
         (lambda b: body().batch(2.0), "bodies must be an integer"),

@@ -203,7 +203,7 @@ def test_wrong_arguments_are_named(case, body):
         (lambda: sandglass.Simulation(case, kappa="much"), "kappa must be a number, but is a str"),
         (
             lambda: sandglass.Simulation(case, step=1),
-            "step is no setting of a simulation; allowed: p",
+            "step is not a setting of a simulation; allowed: p",
         ),
         (lambda: body.advance("long"), "seconds must be a number, but is a str"),
         (lambda: body.impose(None), "factor must be a number, but is a NoneType"),

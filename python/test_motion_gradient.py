@@ -8,10 +8,9 @@ from test_gradient import (
     LAWS,
     METHODS,
     SETS,
-    declared,
     difference,
+    expect_parameters,
     sample,
-    scale,
 )
 
 import sandglass as sg
@@ -57,23 +56,11 @@ def compare_parameters(law, method):
     assert solution.summary["steps"] == STEPS
     of_u = weights(solution)
     found = solution.gradient(of_u).materials
-    own, scales = {}, {}
-    for m, material in enumerate(materials):
-        for name, (ends, unit) in declared(law).items():
 
-            def answer(change):
-                each = [dict(one) for one in materials]
-                each[m][name] += change
-                return (of_u * moving(laws_of(law, each), method, [HEAD]).displacements).sum()
+    def J(each):
+        return (of_u * moving(laws_of(law, each), method, [HEAD]).displacements).sum()
 
-            scales[m, name] = scale(ends, unit, material[name])
-            own[m, name] = difference(answer, SHARE * scales[m, name])
-    most = max(abs(own[key]) * scales[key] for key in own)
-    assert most > 0
-    for m, name in own:
-        error = abs(found[m][name] - own[m, name])
-        allowed = 1e-6 * abs(own[m, name]) + REST * most / scales[m, name]
-        assert error <= allowed, (m, name, found[m][name], own[m, name])
+    expect_parameters(found, law, materials, J, SHARE, REST)
 
 
 @pytest.mark.parametrize("method", METHODS)

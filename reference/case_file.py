@@ -338,7 +338,7 @@ def _obstacle(where, table, moving):
         raise InputError(f"{where}.shape = {shape!r} is not known; {suggestion(shape, SHAPES)}")
     own = {key: float if key == "radius" else tuple for key in shape_keys(shape)}
     others = (*CURVE, "name", "shape", "method", "friction", *own)
-    keys = {"displacement": (0.0, 0.0, 0.0), "inside": False, "penalty": 30.0}
+    keys = {"displacement": (0.0, 0.0, 0.0), "inside": False, "penalty": Obstacle.penalty}
     name, moved, *rest = _read(where, table, *others, set=str, **keys).values()
     factor, _ = factor_and_curve(where, table, moving)
     own = _read(where, table, *table, **own)

@@ -8,6 +8,7 @@ import scipy.sparse
 import ufl
 from dolfinx import fem
 
+from common.hexahedron import gauss_jacobians
 from contact import Contact
 from laws import young_modulus
 
@@ -42,17 +43,19 @@ class Loads:
     def __init__(self, mesh, materials, displacement, cell_nodes, degree):
         space = displacement.function_space
         domain, test = space.mesh, ufl.TestFunction(space)
-        densities = _per_cell(domain, mesh, [m.density for m in materials])
+        densities = [m.density for m in materials]
         self._dead = []  # (forces (N,), curve)
         for traction in mesh.tractions:
             measure = _measure(domain, traction.nodes, cell_nodes, degree)
             self._dead.append((_traction_forces(traction, test, measure), traction.curve))
         lumped = len(cell_nodes[0]) == 8
-        self.masses = _masses(mesh, space, cell_nodes, densities if lumped else None, degree)
+        of_cells = _of_cells(mesh, densities) if lumped else None
+        self.masses = _masses(mesh, space, cell_nodes, of_cells)
         for one in mesh.gravity:
             weight = self.masses * np.tile(one.value, len(self.masses) // 3)
             if not lumped:
-                weight += _weight(one.value, densities, space, test, degree)
+                own = _per_cell(domain, mesh, densities)
+                weight += _weight(one.value, own, space, test, degree)
             self._dead.append((weight, one.curve))
         self._factors = []  # (constant, curve) of each pressure
         F = ufl.Identity(3) + ufl.grad(displacement)
@@ -137,10 +140,15 @@ def assembled(form, matrix=None):
     return scipy.sparse.csr_matrix((data, indices, indptr), shape=size)
 
 
-def _per_cell(domain, mesh, values):
-    """Values of the materials of a HexMesh for each of its cells (m,), in dolfinx's order."""
+def _of_cells(mesh, values):
+    """Values of the materials of a HexMesh for each of its cells (m,)."""
     numbers = np.zeros(len(mesh.cells), dtype=int) if len(values) == 1 else mesh.materials
-    return np.array(values)[numbers[np.asarray(domain.topology.original_cell_index)]]
+    return np.array(values)[numbers]
+
+
+def _per_cell(domain, mesh, values):
+    """The same in dolfinx's order."""
+    return _of_cells(mesh, values)[np.asarray(domain.topology.original_cell_index)]
 
 
 def _measure(domain, nodes, cell_nodes, degree):
@@ -185,22 +193,18 @@ def _traction_forces(traction, test, measure):
     return fem.assemble_vector(fem.form(ufl.inner(t, test) * measure)).array.copy()
 
 
-def _masses(mesh, space, cell_nodes, densities, degree):
+def _masses(mesh, space, cell_nodes, densities):
     """The masses (N,) of the displacement dofs, kg: those attached to the nodes of a HexMesh and,
-    with densities (m,) of hexahedra, an eighth of each one's own at each of its vertices, as in
+    with densities (m,) of its hexahedra, an eighth of each one's own at each of its vertices, as in
     solver/problem/masses.cpp."""
-    blocks = np.zeros(cell_nodes.max() + 1, dtype=int)
-    blocks[cell_nodes] = space.dofmap.list.array.reshape(cell_nodes.shape)
-    of_blocks = np.zeros(space.dofmap.index_map.size_local)
+    of_nodes = np.zeros(cell_nodes.max() + 1)
     for one in mesh.masses:
-        of_blocks[blocks[np.flatnonzero(one.nodes)]] += one.total / one.nodes.sum()
+        of_nodes[np.flatnonzero(one.nodes)] += one.total / one.nodes.sum()
     if densities is not None:
-        test = ufl.TestFunction(fem.FunctionSpace(space.mesh, ("DG", 0)))
-        form = fem.form(
-            test * ufl.dx(metadata={"quadrature_degree": degree}), jit_params=JIT_OPTIONS
-        )
-        volumes = fem.assemble_vector(form).array
-        np.add.at(of_blocks, blocks[cell_nodes], (densities * volumes / 8)[:, None])
+        eighths = densities * gauss_jacobians(mesh.points, mesh.cells).sum(axis=0) / 8
+        np.add.at(of_nodes, mesh.cells, eighths[:, None])
+    of_blocks = np.zeros(space.dofmap.index_map.size_local)
+    of_blocks[space.dofmap.list.array.reshape(cell_nodes.shape)] = of_nodes[cell_nodes]
     return np.repeat(of_blocks, 3)
 
 

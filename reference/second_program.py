@@ -77,11 +77,7 @@ def second_problem(mesh, materials):
     materials: list of Material. Raises InputError if neither does. Both integrate the weight: it is
     that of the golden's lumped masses only if all elements are parallelepipeds.
     """
-    corners = mesh.points[mesh.cells]
-    edges = corners[:, [1, 2, 5, 6]] - corners[:, [0, 3, 4, 7]]  # along xi
-    others = corners[:, [3, 7]] - corners[:, [0, 4]]
-    bent = max(np.ptp(edges, axis=1).max(), np.ptp(others, axis=1).max())
-    if mesh.gravity and bent > 1e-9 * np.ptp(mesh.points):
+    if mesh.gravity and not _has_parallelepipeds(mesh):
         raise InputError("weight of elements that are not parallelepipeds: not supported")
     try:
         from getfem_problem import GetfemProblem
@@ -92,6 +88,15 @@ def second_problem(mesh, materials):
         return SfepyProblem(mesh, materials)
     except InputError:
         return GetfemProblem(mesh, materials)
+
+
+def _has_parallelepipeds(mesh):
+    """Whether opposite edges of each cell of a HexMesh are equal."""
+    corners = mesh.points[mesh.cells]
+    edges = corners[:, [1, 2, 5, 6]] - corners[:, [0, 3, 4, 7]]  # along xi
+    others = corners[:, [3, 7]] - corners[:, [0, 4]]
+    bent = max(np.ptp(edges, axis=1).max(), np.ptp(others, axis=1).max())
+    return bent <= 1e-9 * np.ptp(mesh.points)
 
 
 def table(records):

@@ -273,7 +273,7 @@ TEST(Batch, parameters_replace_those_of_the_case) {
   EXPECT_NE(refused({{}}).find("1 were given; it must be one for each of the 2"), std::string::npos);
   EXPECT_EQ(
       refused({{{"c1", {1.0, 2.0, 3.0}}}, {}}),
-      "material 0, body 0: 'c1' is no parameter of 'neo-hookean'; allowed: young_modulus, poisson_ratio");
+      "material 0, body 0: 'c1' is not a parameter of 'neo-hookean'; allowed: young_modulus, poisson_ratio");
   EXPECT_EQ(refused({{}, {{"young_modulus", {1.0, -2.0, 3.0}}}}),
             "material 1, body 1: young_modulus = -2 must be in (0, inf)");
   EXPECT_EQ(refused({{{"young_modulus", {1.0}}}, {}}),

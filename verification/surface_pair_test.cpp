@@ -345,7 +345,7 @@ TEST(BoxTree, compares_few_of_many) {
   }
 }
 
-/// What two surfaces can not be is refused with the place.
+/// Wrong input is refused, and the message names the place.
 TEST(SurfacePair, names_what_is_wrong) {
   const NeoHookean law{.young_modulus = 1e4, .poisson_ratio = 0.3};
   constexpr auto kinematic = Contact::Method::kinematic;

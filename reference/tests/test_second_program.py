@@ -43,9 +43,9 @@ def test_every_golden_is_compared():
 
 
 def loaded_block(stiff, only_normal, weight):
-    """Two materials, a pressure that follows, springs, a dead traction and weight: all at once.
+    """A block of two materials under a follower pressure, springs, a dead traction and weight.
 
-    With weight the elements are parallelepipeds, where its integral is that of lumped masses.
+    With weight, its elements are parallelepipeds: there both programs have the same nodal weights.
     """
     points, cells, _ = distorted_block(n=2, distortion=0.0 if weight else 0.15)
     foot, top, side = points[:, 2] < 1e-9, points[:, 2] > 1 - 1e-9, points[:, 0] < 1e-9

@@ -50,7 +50,9 @@ class Subject:
     sets: dict = field(default_factory=dict)
     golden: Reference | None = None
     truth: Reference | None = None
-    surface_loads: bool = False  # whether there are any, whose operations belong to no method
+    surface_loads: bool = (
+        False  # pressures, supports, obstacles: their operations belong to no method
+    )
     motion: MotionGolden | None = None  # of a case in motion, which has no single golden field
     displacements: dict = field(default_factory=dict)  # (method, kappa or None) -> (n, 3), m
     hourglass: dict = field(default_factory=dict)  # the same -> energy density (m,), J/m^3

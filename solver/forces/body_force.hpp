@@ -52,7 +52,7 @@ struct ShapeSlopes {
   const std::vector<double>& masses;  ///< kg
   const NodalField& u;                ///< m
   const NodalField& u_rate;           ///< m/s, on which dashpots act; empty: none
-  const NodalField& v;                ///< m/s, with which the power is meant
+  const NodalField& v;                ///< m/s, of the power
   NodalField& by_points;              ///< W/m
   std::vector<double>& by_masses;     ///< W/kg
 };
@@ -74,11 +74,11 @@ class BodyForce {
   virtual void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const = 0;
 
   /// Adds the derivatives of the power of its forces at velocities w, as if these were constant, by the
-  /// displacements and by the increments: the transposed tangent times w. Dead forces have none; those of
-  /// obstacles are not available.
-  virtual void add_derivatives_of_power(Factors /*factors*/, const NodalMotion& /*motion*/, NodalRows /*w*/,
-                                        AtNodes<Row<double>> /*by_u*/,
-                                        AtNodes<Row<double>> /*by_increment*/) const {}
+  /// displacements and by the increments: the transposed tangent times w. Throws InputError if they are not
+  /// available.
+  virtual void add_derivatives_of_power(Factors factors, const NodalMotion& motion, NodalRows w,
+                                        AtNodes<Row<double>> by_u,
+                                        AtNodes<Row<double>> by_increment) const = 0;
 
   /// Adds the potential (J) at displacements u (m): the forces are minus its derivative.
   virtual void add_potential(Factors factors, NodalRows u, double& sum) const = 0;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "forces/contact_scale.hpp"
+#include "forces/contact_input.hpp"
 #include "forces/surface_pair.hpp"
 
 namespace sandglass {
@@ -15,9 +15,7 @@ std::optional<BrokenRule> Contact::broken_rule() const {
 void Contact::resolve(ForceResolver& resolver) const {
   require_own_name(resolver, name, label);
   const auto refuse_at = [&](int node, const std::string& what, const std::string& allowed) {
-    const Vector& X = resolver.points[at(node)];
-    throw InputError(fmt::format("{}: contact '{}': node {} at ({:.6g}, {:.6g}, {:.6g}) m {}; allowed: {}",
-                                 resolver.file, label, node, X[0], X[1], X[2], what, allowed));
+    refuse_node(resolver, name, label, node, what, allowed);
   };
   std::vector<std::vector<Quadrilateral>> surfaces{resolver.faces(name, set)};
   auto all = surfaces.front();
@@ -42,9 +40,8 @@ void Contact::resolve(ForceResolver& resolver) const {
     }
   }
   const ContactScale scale(resolver, all);
-  const auto make = method == Method::penalty ? make_penalty_pair : make_kinematic_pair;
-  auto pair = make(*this, {std::move(surfaces), scale.stiffness(penalty), scale.edge}, resolver.points,
-                   resolver.cells);
+  auto pair = make_surface_pair(*this, {std::move(surfaces), scale.stiffness(penalty), scale.edge},
+                                resolver.points, resolver.cells);
   if (const auto deepest = pair->deepest_at_start(); deepest && deepest->depth > scale.rounding()) {
     refuse_at(deepest->node,
               fmt::format("is {:.3g} m inside of what it may touch at the start", deepest->depth),

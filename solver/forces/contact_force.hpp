@@ -146,9 +146,12 @@ class ContactForce : public BodyForce {
     const std::vector<Row<double>> rows(memory());
     add_contact_potential(factors, u, rows.data(), sum);
   }
+  void add_derivatives_of_power(Factors, const NodalMotion&, NodalRows, AtNodes<Row<double>>,
+                                AtNodes<Row<double>>) const final {
+    refuse_derivatives("");
+  }
   void add_slopes(Factors /*factors*/, const ShapeSlopes& /*shape*/) const final {
-    throw InputError(fmt::format(
-        "derivatives: [[{}]] has none by positions of nodes; allowed: a case without it", traits().name));
+    refuse_derivatives(" by positions of nodes");
   }
   void add_stiffness(AtNodes<Row<float>> /*diagonal*/) const final {}
   void add_size(double /*arm*/, double& /*sum*/) const final {}
@@ -156,6 +159,12 @@ class ContactForce : public BodyForce {
 
  protected:
   using BodyForce::BodyForce;
+
+ private:
+  [[noreturn]] void refuse_derivatives(std::string_view by) const {
+    throw InputError(
+        fmt::format("derivatives: [[{}]] has none{}; allowed: a case without it", traits().name, by));
+  }
 };
 
 /// Those among the forces on a body.

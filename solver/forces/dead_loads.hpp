@@ -25,6 +25,8 @@ class DeadLoads final : public BodyForce {
                      std::optional<std::vector<SlopesOfLoad>> slopes = std::nullopt);
 
   void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const override;
+  void add_derivatives_of_power(Factors, const NodalMotion&, NodalRows, AtNodes<Row<double>>,
+                                AtNodes<Row<double>>) const override {}
   void add_potential(Factors factors, NodalRows u, double& sum) const override;
   void add_slopes(Factors factors, const ShapeSlopes& shape) const override;
   void add_rates(Factors, const std::vector<double>&, std::vector<LoadRates>&) const override {}

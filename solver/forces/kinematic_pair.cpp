@@ -11,8 +11,8 @@ namespace {
 
 /// Points remember also the weights of the point of the face that they meet; the direction to it and their
 /// impulse, kg m; their impulse along the face, kg m. Nodes remember their motion in the last step, and how
-/// far the contact moves them in this one, m. The strength of points that
-/// touch is one more than the number of the triangle of the face.
+/// far the contact moves them in this one, m. The strength of points that touch is one more than the number
+/// of the triangle of the face.
 class KinematicPair final : public SurfacePair {
  public:
   KinematicPair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
@@ -145,6 +145,16 @@ class KinematicPair final : public SurfacePair {
     return MovingSurface::weights_along(corners, meeting.triangle, x, direction);
   }
 
+  /// Moves a node by its share of an impulse, kg m: its displacement, its position `x` on the surface and how
+  /// far the contact `moved` it, m.
+  static void push(int node, double weight, const Vector& impulse, const NodalPush& nodes, Row<double>& x,
+                   Row<double>& moved) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double by = weight * nodes.inverse_masses[node][i] * impulse[i];
+      for (Row<double>* row : {&nodes.u[node], &nodes.increment[node], &x, &moved}) (*row)[i] += by;
+    }
+  }
+
   /// Moves the impulse on the face to where it has no moment with friction either.
   static void turn(const Meeting& meeting, const NodalPush& nodes) {
     const Vector impulse = meeting.impulse();
@@ -152,27 +162,15 @@ class KinematicPair final : public SurfacePair {
     const Row<double> there = weights_before(meeting, impulse, nodes);
     for (std::size_t I = 0; I < 4; ++I) {
       const int place = meeting.corners[I], node = meeting.onto.nodes()[at(place)];
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double by = (meeting.weights[I] - there[I]) * nodes.inverse_masses[node][i] * impulse[i];
-        nodes.u[node][i] += by;
-        nodes.increment[node][i] += by;
-        meeting.of_onto[place][i] += by;
-        meeting.nodes_onto[2 * at(place) + 1][i] += by;
-      }
+      push(node, meeting.weights[I] - there[I], impulse, nodes, meeting.of_onto[place],
+           meeting.nodes_onto[2 * at(place) + 1]);
     }
   }
 
   /// Moves the nodes of a point and of the face that it touches by an impulse, kg m.
   static void push(const Meeting& meeting, const Vector& impulse, const NodalPush& nodes) {
     meeting.for_each_node([&](int node, std::size_t place, double weight, Row<double>* x, Row<double>* rows) {
-      const Row<double>& w = nodes.inverse_masses[node];
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double by = weight * w[i] * impulse[i];
-        nodes.u[node][i] += by;
-        nodes.increment[node][i] += by;
-        x[place][i] += by;
-        rows[2 * place + 1][i] += by;
-      }
+      push(node, weight, impulse, nodes, x[place], rows[2 * place + 1]);
     });
   }
 
@@ -241,11 +239,6 @@ class KinematicPair final : public SurfacePair {
       });
       return apart;
     });
-  }
-
-  std::shared_ptr<const BodyForce> on(SurfacesOfPair given, const NodalField& points,
-                                      std::span<const Hexahedron> cells) const override {
-    return make_kinematic_pair(contact_, std::move(given), points, cells);
   }
 };
 

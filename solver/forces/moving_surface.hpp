@@ -78,7 +78,7 @@ class MovingSurface {
   const Quadrilateral& corners(int face) const { return faces_[at(face)]; }
 
   /// The closest point to x (m) within `reach` (m) on faces that oppose a normal, except those of a sorted
-  /// list. Beyond the rim of an open surface, its faces go on in their planes. Allocates nothing.
+  /// list. An open surface is extended beyond its rim in the planes of its faces. Allocates nothing.
   SurfaceFoot closest(const Vector& x, const Vector& normal, double reach, const std::vector<int>& except,
                       const Row<double>* rows) const;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "forces/contact_scale.hpp"
+#include "forces/contact_input.hpp"
 #include "forces/obstacle_contact.hpp"
 
 namespace sandglass {
@@ -87,11 +87,9 @@ void Obstacle::resolve(ForceResolver& resolver) const {
   const auto depth_of = [&](const TouchingNode& one) { return contact->depth_at_start(one); };
   const TouchingNode deepest = *std::ranges::max_element(contact->touching(), {}, depth_of);
   if (const double depth = depth_of(deepest); depth > scale.rounding()) {
-    throw InputError(fmt::format(
-        "{}: obstacle '{}': node {} at ({:.6g}, {:.6g}, {:.6g}) m is {:.3g} m inside of it at the start; "
-        "allowed: a body that is {} of it",
-        resolver.file, label, deepest.node, deepest.X[0], deepest.X[1], deepest.X[2], depth,
-        inside ? "within" : "outside"));
+    refuse_node(resolver, name, label, deepest.node,
+                fmt::format("is {:.3g} m inside of it at the start", depth),
+                fmt::format("a body that is {} of it", inside ? "within" : "outside"));
   }
   resolver.forces.push_back(std::move(contact));
 }

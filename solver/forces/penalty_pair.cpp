@@ -90,11 +90,6 @@ class PenaltyPair final : public SurfacePair {
     anchor = surface.weights_at(foot, difference(foot.x, along), onto);
     return anchor;
   }
-
-  std::shared_ptr<const BodyForce> on(SurfacesOfPair given, const NodalField& points,
-                                      std::span<const Hexahedron> cells) const override {
-    return make_penalty_pair(contact_, std::move(given), points, cells);
-  }
 };
 
 }  // namespace

@@ -57,7 +57,7 @@ std::shared_ptr<const BodyForce> SurfacePair::restricted_to(const MeshPart& part
     faces = faces_in(part, faces);
     if (faces.empty()) return nullptr;
   }
-  return on(std::move(inside), part.mesh.points, part.mesh.cells);
+  return make_surface_pair(contact_, std::move(inside), part.mesh.points, part.mesh.cells);
 }
 
 std::optional<SurfacePair::Deepest> SurfacePair::deepest_at_start() const {
@@ -73,6 +73,12 @@ std::optional<SurfacePair::Deepest> SurfacePair::deepest_at_start() const {
   };
   for_each_touch(NodalRows(undeformed.data(), first), memory, use, [](Row<double>*) {});
   return deepest;
+}
+
+std::shared_ptr<SurfacePair> make_surface_pair(const Contact& contact, SurfacesOfPair given,
+                                               const NodalField& points, std::span<const Hexahedron> cells) {
+  const auto make = contact.method == Contact::Method::penalty ? make_penalty_pair : make_kinematic_pair;
+  return make(contact, std::move(given), points, cells);
 }
 
 }  // namespace sandglass

@@ -62,10 +62,6 @@ class SurfacePair : public ContactForce {
   SurfacePair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
               std::span<const Hexahedron> cells, std::size_t by_point, std::size_t by_node);
 
-  /// The same pair with other surfaces.
-  virtual std::shared_ptr<const BodyForce> on(SurfacesOfPair given, const NodalField& points,
-                                              std::span<const Hexahedron> cells) const = 0;
-
   Row<double>* of_point(ContactMemory& memory, const Side& side, std::size_t k) const {
     return memory.others + side.first_row + by_point_ * k;
   }
@@ -149,5 +145,9 @@ std::shared_ptr<SurfacePair> make_penalty_pair(const Contact& contact, SurfacesO
 /// takes from their relative motion along the face at most the coefficient of friction times the impulse.
 std::shared_ptr<SurfacePair> make_kinematic_pair(const Contact& contact, SurfacesOfPair given,
                                                  const NodalField& points, std::span<const Hexahedron> cells);
+
+/// By the method of the contact.
+std::shared_ptr<SurfacePair> make_surface_pair(const Contact& contact, SurfacesOfPair given,
+                                               const NodalField& points, std::span<const Hexahedron> cells);
 
 }  // namespace sandglass

@@ -31,25 +31,30 @@ KernelLaw kernel_law(const AnyLaw& any_law, VolumetricPart volume) {
   return std::visit([=](const auto& law) { return to_kernel_law(law, volume); }, any_law);
 }
 
-AnyLaw with_parameters(AnyLaw law, const std::map<std::string, double>& values, std::string_view where) {
-  std::size_t known = 0;
+std::vector<std::string_view> parameter_names(const AnyLaw& law) {
   std::vector<std::string_view> names;
+  AnyLaw copy = law;
+  for_each_parameter(copy, [&](const auto& parameter, double) { names.push_back(parameter.name); });
+  return names;
+}
+
+void require_parameter(const AnyLaw& law, std::string_view name, std::string_view where) {
+  const auto names = parameter_names(law);
+  if (std::ranges::find(names, name) != names.end()) return;
+  throw InputError(fmt::format("{}: '{}' is not a parameter of '{}'; allowed: {}", where, name, name_of(law),
+                               fmt::join(names, ", ")));
+}
+
+AnyLaw with_parameters(AnyLaw law, const std::map<std::string, double>& values, std::string_view where) {
   for_each_parameter(law, [&](const auto& parameter, double& value) {
-    names.push_back(parameter.name);
     const auto given = values.find(std::string(parameter.name));
     if (given == values.end()) return;
-    ++known;
     value = given->second;
     if (parameter.range.contains(value)) return;
     throw InputError(
         fmt::format("{}: {} = {} must be in {}", where, parameter.name, value, parameter.range.text()));
   });
-  for (const auto& [name, value] : values) {
-    if (known == values.size()) break;
-    if (std::ranges::find(names, name) != names.end()) continue;
-    throw InputError(fmt::format("{}: '{}' is no parameter of '{}'; allowed: {}", where, name, name_of(law),
-                                 fmt::join(names, ", ")));
-  }
+  for (const auto& [name, value] : values) require_parameter(law, name, where);
   std::visit(
       [&]<class Law>(const Law& own) {
         if constexpr (requires { own.broken_rule(); }) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "base/type_list.hpp"
 #include "material/called_law.hpp"
@@ -55,6 +56,12 @@ void for_each_parameter(AnyLaw& any_law, const Visit& visit) {
       },
       any_law);
 }
+
+/// The names of the parameters of a law, in their order.
+std::vector<std::string_view> parameter_names(const AnyLaw& law);
+
+/// Throws InputError, which begins with `where`, unless a law has a parameter of this name.
+void require_parameter(const AnyLaw& law, std::string_view name, std::string_view where);
 
 /// The law with other values of some parameters, by their names. Throws InputError, which begins with
 /// `where`, for unknown names, values out of range and broken rules.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -107,6 +108,16 @@ double dot(const Rows<Real>& a, const Rows<Real>& b, const Blocks& blocks) {
     for (std::size_t k = first; k < last; ++k) sum += x[k] * y[k];
     return static_cast<double>(sum);
   });
+}
+
+/// The largest magnitude of all numbers of rows.
+template <class Real>
+Real largest(const Rows<Real>& rows) {
+  const Real* x = numbers_of(rows);
+  Real most = 0;
+#pragma omp simd reduction(max : most)
+  for (std::size_t k = 0; k < 4 * rows.size(); ++k) most = std::max(most, std::abs(x[k]));
+  return most;
 }
 
 /// Rows rounded to another type of numbers.

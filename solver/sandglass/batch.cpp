@@ -33,8 +33,8 @@ void require_supported(const Scene& scene) {
             "a batch takes the step of its stiffest element; set subcycles = 1 and body_frequency = 0");
 }
 
-/// Makes the elements of a pack of bodies. Throws InputError, which lists the methods that have such kernels,
-/// if this one has none.
+/// The function that makes the elements of a pack of bodies. Throws InputError, which lists the methods that
+/// have such kernels, if this one has none.
 template <class Number>
 AssembleBatch<Number>* batch_force_of(const Model& model) {
   const auto kernel = [](const MethodEntry& method) {

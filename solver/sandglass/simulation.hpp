@@ -105,7 +105,7 @@ class Simulation {
   /// at all. Throws InputError or ComputationError if that fails.
   void save(const std::filesystem::path& file) const;
 
-  /// Takes the state that `save` wrote, from which the same program moves on with the same bits. Throws
+  /// Takes the state that `save` wrote; the same program continues from it with the same bits. Throws
   /// InputError for a damaged file, and for one of another case, mesh or settings, with the differences.
   void resume(const std::filesystem::path& file);
 

@@ -25,7 +25,7 @@ void require_healthy(std::span<const double> jacobians, long step);
 template <class Real>
 void require_healthy(const Body<Real>& body, long step);
 
-/// Throws ComputationError if a node passed through what it touched.
+/// Throws ComputationError if a node may have passed through a surface that it touched.
 void require_not_passed(const Touch& touch, const NodalField& points, long step);
 
 }  // namespace sandglass

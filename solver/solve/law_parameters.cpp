@@ -50,11 +50,4 @@ AnyLaw with_moved_parameters(AnyLaw law, const std::vector<double>& by) {
   return law;
 }
 
-std::vector<std::string_view> parameter_names(const AnyLaw& law) {
-  std::vector<std::string_view> names;
-  AnyLaw copy = law;
-  for_each_parameter(copy, [&](const auto& p, double) { names.push_back(p.name); });
-  return names;
-}
-
 }  // namespace sandglass

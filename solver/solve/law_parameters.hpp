@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "material/materials.hpp"
@@ -26,8 +25,5 @@ std::vector<ParameterStep> parameter_steps(const AnyLaw& law);
 
 /// A law with a number added to each of its parameters.
 AnyLaw with_moved_parameters(AnyLaw law, const std::vector<double>& by);
-
-/// The names of the parameters of a law, in their order.
-std::vector<std::string_view> parameter_names(const AnyLaw& law);
 
 }  // namespace sandglass

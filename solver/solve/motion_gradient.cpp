@@ -39,14 +39,6 @@ void add(double factor, const Rows<double>& x, Rows<double>& y, const Blocks& bl
   });
 }
 
-double largest(const Rows<double>& rows) {
-  const double* x = numbers_of(rows);
-  double most = 0.0;
-#pragma omp simd reduction(max : most)
-  for (std::size_t k = 0; k < 4 * rows.size(); ++k) most = std::max(most, std::abs(x[k]));
-  return most;
-}
-
 /// The forward and the reverse recurrence of a motion. Displacements u_n and the increments d_n of free
 /// components follow from
 ///   d_(n+1) = keep_n d_n - gain_n M^-1 F(u_n, u_n - u_(n-1)),   u_(n+1) = u_n + d_(n+1),
@@ -213,8 +205,7 @@ class MotionAdjoint {
   /// The largest change of w along an edge, over its length; not zero even if w is constant.
   double largest_gradient() const {
     const Mesh& mesh = model_.scene().mesh;
-    double most = 0.0, diameter = 0.0;
-    for (const Vector& X : mesh.points) diameter = std::max(diameter, distance(X, mesh.points[0]));
+    double most = 0.0;
     for (const Hexahedron& cell : mesh.cells) {
       for (const auto& [a, b] : hexahedron_edges) {
         const Row<double>&from = w_[at(layout().row_of_node[at(cell[a])])],
@@ -223,7 +214,7 @@ class MotionAdjoint {
         most = std::max(most, moved / distance(mesh.points[at(cell[a])], mesh.points[at(cell[b])]));
       }
     }
-    return std::max(most, largest(w_) / diameter);
+    return std::max(most, largest(w_) / diagonal(mesh.points));
   }
 
   /// Adds the derivatives by forces that grow with the case's load, and by displacements on which other loads

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "problem/shape_slopes.hpp"
 #include "solve/law_parameters.hpp"
+#include "solve/stability.hpp"
 
 namespace sandglass {
 
@@ -95,7 +96,7 @@ void require_differentiable(const Model& model, const Relaxation& answer) {
     refuse_derivatives(fmt::format("[[{}]] is not supported, for {}; allowed: forces with a potential",
                                    force->traits().name, force->traits().no_potential));
   }
-  if (!method.controls_hourglass || method.damps_only) {
+  if (leaves_hourglass_modes(model.choice())) {
     refuse_derivatives(
         fmt::format("method '{}' does not resist hourglass modes, so its stiffness is singular; allowed: "
                     "a method that does",

@@ -24,13 +24,13 @@ struct Gradient {
   double damping = 0.0;          ///< by the damping proportional to mass, s; of a motion
 };
 
-/// Which derivatives are wanted of those that take long.
+/// Which of the costly derivatives to compute.
 struct Wanted {
   bool parameters = true;  ///< of laws
   bool points = false;     ///< reference positions of nodes
 };
 
-/// Throws InputError for what no derivatives exist of: `why` has the reason and what is allowed.
+/// Throws InputError: derivatives do not exist, for the reason `why`, which says what is allowed.
 [[noreturn]] void refuse_derivatives(const std::string& why);
 
 /// Throws InputError with the reason why forces have no derivatives that static answers and motions need.

@@ -111,9 +111,7 @@ NodalField StaticTangent::solve(const NodalField& b_at_nodes) {
   Rows<double> b = to_rows<double>(handed_on(b_at_nodes), layout());
   mixed_.body().constraints().clear(b);
   Rows<double> a(b.size());
-  double unit_force = 0.0;  // with which no square overflows
-  for (const auto& row : b)
-    unit_force = std::max({unit_force, std::abs(row[0]), std::abs(row[1]), std::abs(row[2])});
+  const double unit_force = largest(b);  // with which no square overflows
   if (!(unit_force > 0.0)) return to_field(a, layout());
   const auto multiply = [](Rows<double>& rows, double factor) {
     for (auto& row : rows) row = {{factor * row[0], factor * row[1], factor * row[2]}};

@@ -43,9 +43,9 @@ struct OwnMotion {
 
 /// Computes a scene's own motion with a method on one thread, in float, or in double for an adaptive method.
 /// A motion that fails, or whose steps shrink until it would take a hundred times as many as with the
-/// undeformed step, has no mean step, but a remark. So has one that is not followed, as its steps times its
-/// elements would exceed a limit. Throws ComputationError if interrupted, InputError for a method that takes
-/// no steps.
+/// undeformed step, has no mean step, but a remark. A motion whose steps times elements would exceed the
+/// limit is not followed, and has a remark only. Throws ComputationError if interrupted, InputError for a
+/// method that takes no steps.
 OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proceed& proceed,
                             double most_element_steps = INFINITY);
 

@@ -18,8 +18,7 @@ namespace {
   throw ComputationError("verify: interrupted; nothing was written");
 }
 
-/// A longer motion, of more than about ten seconds, is not followed: its accuracy, not its steps, is of
-/// interest.
+/// Longer motions, of more than about ten seconds, are not followed: such cases are about accuracy.
 constexpr double most_element_steps = 1e8;
 
 /// The motion that a run has already computed.

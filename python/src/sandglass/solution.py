@@ -106,12 +106,12 @@ class Solution:
     def gradient(self, displacement=None, reactions=None, *, materials=True, points=False):
         """The derivatives of a scalar J of this answer by all that it depends on.
 
-        Of a static answer: `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to
+        For a static answer: `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to
         dJ/dR, (3,). `points`: whether also by the undeformed positions of nodes, which takes
         longer. One adjoint problem for all parameters together, which costs about as much as
         `solve`. Dead loads and springs may act. Levels of adaptive elements count as constant.
 
-        Of a motion: `displacement`: dJ/du at all frames, (frames, n, 3). The steps are computed
+        For a motion: `displacement`: dJ/du at all frames, (frames, n, 3). The steps are computed
         again and followed back, each as it was: the derivative is that of the computed motion at
         constant steps. Memory grows as the root of their number. `materials`: whether also by the
         parameters of laws, which takes half of the time or more.

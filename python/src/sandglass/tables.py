@@ -35,7 +35,7 @@ class Table:
 
     def __setattr__(self, key, value):
         if key not in self._keys:
-            raise TypeError(f"{self._name()}: '{key}' is no parameter; {self._known(key)}")
+            raise TypeError(f"{self._name()}: '{key}' is not a parameter; {self._known(key)}")
         if value is None:
             if self._keys[key]["required"]:
                 raise TypeError(f"{self._name()}: {key} is missing; it must be given")
@@ -46,7 +46,7 @@ class Table:
     def __getattr__(self, key):
         if key in self._keys:
             return self._values.get(key)
-        raise AttributeError(f"{self._name()}: '{key}' is no parameter; {self._known(key)}")
+        raise AttributeError(f"{self._name()}: '{key}' is not a parameter; {self._known(key)}")
 
     def __getstate__(self):
         return self._values

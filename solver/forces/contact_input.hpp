@@ -2,6 +2,7 @@
 
 #include "forces/force_resolver.hpp"
 
+/// What the tables [[obstacle]] and [[contact]] share when they are resolved.
 namespace sandglass {
 
 /// What the stiffness of a contact follows: the smallest Young's modulus and the shortest edge of the
@@ -21,6 +22,10 @@ struct ContactScale {
 
 /// Throws InputError unless a contact can be reported under a name (`label`) of its own.
 void require_own_name(const ForceResolver& resolver, std::string_view table, const std::string& label);
+
+/// Throws InputError: a contact (`label`) of a table cannot be, for a node; `what` follows its place.
+[[noreturn]] void refuse_node(const ForceResolver& resolver, std::string_view table, const std::string& label,
+                              int node, const std::string& what, const std::string& allowed);
 
 /// The rule that the name of a contact breaks by itself, if any.
 std::optional<BrokenRule> broken_rule_of_name(const std::string& label);

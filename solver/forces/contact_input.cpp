@@ -1,4 +1,4 @@
-#include "forces/contact_scale.hpp"
+#include "forces/contact_input.hpp"
 
 #include <algorithm>
 
@@ -32,6 +32,13 @@ void require_own_name(const ForceResolver& resolver, std::string_view table, con
     if (other->touch(std::vector<Row<double>>(other->memory()).data()).name == label)
       refuse(fmt::format("another {}", other->traits().name));
   }
+}
+
+void refuse_node(const ForceResolver& resolver, std::string_view table, const std::string& label, int node,
+                 const std::string& what, const std::string& allowed) {
+  const Vector& X = resolver.points[at(node)];
+  throw InputError(fmt::format("{}: {} '{}': node {} at ({:.6g}, {:.6g}, {:.6g}) m {}; allowed: {}",
+                               resolver.file, table, label, node, X[0], X[1], X[2], what, allowed));
 }
 
 std::optional<BrokenRule> broken_rule_of_name(const std::string& label) {
