@@ -71,6 +71,9 @@ class MovingSurface {
     return mean(nodes, weights, rows + nodes_.size());
   }
 
+  /// Where the corners of a face are now, m.
+  std::array<Vector, 4> corners_now(int face, const Row<double>* rows) const;
+
   /// The undeformed area of a face, m^2.
   double area(int face) const { return areas_[at(face)]; }
 
@@ -86,7 +89,13 @@ class MovingSurface {
   /// also beyond the triangle.
   Row<double> weights_at(const SurfaceFoot& foot, const Vector& x, const Row<double>* rows) const;
 
-  /// The same at the projection of x (m) along a direction onto the plane of a triangle of a face with these
+  /// The direction from a point x (m) behind a face to its foot, of length one, as the triangle has it when
+  /// the corners of the face are at `now` and when they are at `then` (m).
+  static std::pair<Vector, Vector> directions(const SurfaceFoot& foot, const Vector& x,
+                                              const std::array<Vector, 4>& now,
+                                              const std::array<Vector, 4>& then);
+
+  /// The weights at the projection of x (m) along a direction onto the plane of a triangle of a face with these
   /// corners (m).
   static Row<double> weights_along(const std::array<Vector, 4>& corners, std::size_t triangle,
                                    const Vector& x, const Vector& direction);
@@ -100,7 +109,6 @@ class MovingSurface {
     return sum_of_all;
   }
 
-  std::array<Vector, 4> corners_now(int face, const Row<double>* rows) const;
   void set_behind(const Vector& x, SurfaceFoot& foot, const Row<double>* rows) const;
 
   std::vector<int> nodes_;
