@@ -192,12 +192,13 @@ class KinematicPair final : public SurfacePair {
   /// Changes the impulse of a point so that it is on the face. Returns by how much it moves, m.
   double separate(const Meeting& meeting, const NodalPush& nodes) const {
     const Vector n = meeting.direction(), end = meeting.direction_at_end();
-    Vector apart{}, motion{};
+    Vector apart{}, motion{}, last{};
     double along_n = 0.0, mobility = 0.0;  // 1/kg, of an impulse along n, and in the mean
     meeting.for_each_node(
-        [&](int node, std::size_t place, double weight, const Row<double>* x, Row<double>*) {
+        [&](int node, std::size_t place, double weight, const Row<double>* x, Row<double>* rows) {
           const Row<double>&w = nodes.inverse_masses[node], &increment = nodes.increment[node];
           for (std::size_t i = 0; i < 3; ++i) {
+            last[i] += weight * rows[2 * place][i];
             apart[i] += weight * x[place][i];
             motion[i] += weight * increment[i];
             along_n += weight * weight * w[i] * n[i] * end[i];
@@ -206,7 +207,7 @@ class KinematicPair final : public SurfacePair {
         });
     if (!(along_n > 0.0)) return 0.0;
     double& impulse = meeting.normal[3];
-    const double before = std::exchange(impulse, std::max(0.0, impulse - dot(apart, end) / along_n));
+    const double before = std::exchange(impulse, std::max(0.0, impulse - std::max(dot(apart, end), dot(motion, n) + dot(last, n)) / along_n));
     Vector change = sum({}, impulse - before, n);
     if (contact_.friction > 0.0) {
       const Vector old{meeting.along[0], meeting.along[1], meeting.along[2]};
