@@ -39,6 +39,10 @@ void Contact::resolve(ForceResolver& resolver) const {
                 "method = 'penalty', or sets without such nodes");
     }
   }
+  for (std::size_t s = 0; s < surfaces.size() && surfaces.size() > 1; ++s) {
+    const int node = node_within_other_body(resolver, surfaces[s], surfaces[1 - s]);
+    if (node >= 0) refuse_at(node, "is within the other body at the start", "bodies that do not intersect");
+  }
   const ContactScale scale(resolver, all);
   auto pair = make_surface_pair(*this, {std::move(surfaces), scale.stiffness(penalty), scale.edge},
                                 resolver.points, resolver.cells);

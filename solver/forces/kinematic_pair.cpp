@@ -247,7 +247,7 @@ class KinematicPair final : public SurfacePair {
       }
     }
     of_pair[has_moved] = 1.0;
-    of_pair[way_so_far] += std::sqrt(3.0) * farthest;
+    of_pair[way_so_far] += 2.0 * std::sqrt(3.0) * farthest;
     memory.moves[3] = for_each_meeting(memory, [](const Meeting& meeting) {  // what is left
       double apart = 0.0;
       meeting.for_each_node([&](int, std::size_t place, double weight, const Row<double>* x, Row<double>*) {

@@ -25,6 +25,14 @@ struct SurfaceFoot {
   double distance() const { return std::sqrt(square); }
 };
 
+/// The least and the largest motion of nodes along each axis, m.
+struct Motions {
+  Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+
+  /// No two nodes move by more (m) relative to each other.
+  double largest_relative() const { return length(difference(high, low)); }
+};
+
 /// Boundary faces of a deformable body where it is now. Faces are four triangles about their middles. What
 /// changes is in rows that the caller keeps, zeros at the start.
 class MovingSurface {
@@ -41,21 +49,18 @@ class MovingSurface {
 
   std::size_t rows() const { return 2 * nodes_.size() + tree_.rows(); }
 
-  /// Moves it to displacements u (m). Returns the largest distance (m) by which a node moved.
+  /// Moves it to displacements u (m), and extends `motions` by those of its nodes.
   template <class Displacements>
-  double move(const Displacements& u, Row<double>* rows) const {
-    double most = 0.0;
+  void move(const Displacements& u, Row<double>* rows, Motions& motions) const {
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       const Row<double>& of_node = u[nodes_[n]];
-      double square = 0.0;
       for (std::size_t i = 0; i < 3; ++i) {
         const double x = undeformed_[n][i] + of_node[i], way = x - rows[n][i];
         rows[n][i] = x;
-        square += way * way;
+        motions.low[i] = std::min(motions.low[i], way);
+        motions.high[i] = std::max(motions.high[i], way);
       }
-      most = std::max(most, square);
     }
-    return std::sqrt(most);
   }
 
   /// Fits normals and the tree to the present position, as `closest` needs them.
