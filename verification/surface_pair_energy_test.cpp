@@ -3,12 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "base/error.hpp"
-#include "mesh/edges.hpp"
+#include "forces/contact_input.hpp"
 #include "solve/central_difference.hpp"
-#include "support/kept_run.hpp"
+#include "support/momentum.hpp"
 #include "support/random_scene.hpp"
 #include "support/two_bodies.hpp"
 
@@ -43,123 +41,140 @@ Mesh ball(double radius, int n) {
   });
 }
 
-TEST(Probe, slides_straight) {
-  for (const auto method : both_methods)
+/// A box on a softer, larger one, with meshes that match: points lie on faces to rounding, which has no
+/// direction; taken for one, the motion was no longer finite after ten steps. The box rests off the centre
+/// and slides away as the lower box yields; its energy is what its weight works, less what vibrations lose.
+TEST(SurfacePair, lets_a_box_slide_on_a_box) {
+  for (const auto method : both_methods) {
     for (const double fraction : {0.5, 0.9}) {
-      TwoBodies bodies(box({1.0, 1.0, 0.5}, {4, 4, 2}),
-                       moved(box({0.6, 0.6, 0.3}, {3, 3, 2}), {0.17, 0.23, 0.5}),
+      TwoBodies bodies(box({1.0, 1.0, 0.5}, {4, 4, 2}), moved(box({0.6, 0.6, 0.3}, {3, 3, 2}), {0.17, 0.23, 0.5}),
                        NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
       Case& d = bodies.description;
       d.displacements = {{"foot", {}}};
       d.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
       d.forces.of<Contact>() = {pair_of("upper", "lower", method)};
-      d.dynamics.duration = 10.0;
+      d.dynamics.duration = 2.0;
       d.dynamics.step_fraction = fraction;
       d.dynamics.check_interval = 10;
       const Scene scene = bodies.scene();
-      const Model model(scene, {"tl-perturbation"});
       Recorder recorder;
-      const Motion motion = integrate(model, recorder);
-      Vector way{};
-      for (const int n : scene.sets.at("upper")) way = sum(way, 1.0 / 48.0, motion.u[at(n)]);
+      integrate(Model(scene, {"tl-perturbation"}), recorder);
       const Gain gain(recorder.rows);
-      fmt::print("{} {}: way {:.3g} {:.3g} {:.3g} gained {:.3g} of {:.3g} lost {:.3g} work {:.3g} depth {:.3g}\n",
-                 int(method), fraction, way[0], way[1], way[2], gain.gained, gain.largest,
-                 recorder.rows.back().friction, recorder.rows.back().external_work, recorder.rows.back().depth);
-    }
-}
-
-TEST(Probe, ball_in_bowl) {
-  for (const auto method : both_methods)
-    for (const double fraction : {0.5, 0.9})
-      for (const double way : {1.0, -1.0}) {
-        Mesh bowl = lattice({10, 10, 2}, [&](const Vector& s) {
-          const double x = 2.0 * s[0] - 1.0, y = 2.0 * s[1] - 1.0, r2 = x * x + y * y;
-          return Vector{x, y, s[2] * (0.4 + way * 0.25 * (r2 - 1.0))};
-        });
-        TwoBodies bodies(std::move(bowl),
-                         moved(ball(0.25, 4), {way > 0 ? 0.5 : 0.02, 0.0, way > 0 ? 0.55 : 0.92}),
-                         NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
-        Case& d = bodies.description;
-        d.displacements = {{"foot", {}}};
-        d.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
-        d.forces.of<Contact>() = {pair_of("upper", "lower", method)};
-        d.dynamics.duration = 2.0;
-        d.dynamics.step_fraction = fraction;
-        d.dynamics.check_interval = 10;
-        const Scene scene = bodies.scene();
-        const Model model(scene, {"tl-perturbation"});
-        Recorder recorder;
-        const Motion motion = integrate(model, recorder);
-        const Gain gain(recorder.rows);
-        fmt::print("{} {} {}: gained {:.3g} of {:.3g} lost {:.3g} work {:.3g} kin {:.3g} depth {:.3g} x {:.3g}\n",
-                   way, int(method), fraction, gain.gained, gain.largest, recorder.rows.back().friction,
-                   recorder.rows.back().external_work, recorder.rows.back().kinetic, recorder.rows.back().depth,
-                   motion.u.back()[0]);
-      }
-}
-
-TEST(Probe, collides_at_random) {
-  const long scenes = from_environment("SANDGLASS_SCENES", 100);
-  RandomGeometry random(48);
-  std::array<double, 2> worst{};
-  std::array<int, 2> errors{};
-  for (long number = 0; number < scenes; ++number) {
-    const auto size = [&] { return random.uniform(0.3, 1.0); };
-    const auto count = [&] { return static_cast<int>(random.uniform(2.0, 4.999)); };
-    const auto body = [&]() -> Mesh {
-      if (random.uniform(0.0, 1.0) > 0.5) {
-        const double r = 0.5 * size();
-        const int n = 2 * count();
-        return moved(ball(r, std::min(n, 6)), {0.0, 0.0, 0.0});
-      }
-      const std::array<double, 3> sizes{size(), size(), size()};
-      const std::array<int, 3> counts{count(), count(), count()};
-      return moved(box(sizes, counts), {-0.5 * sizes[0], -0.5 * sizes[1], -0.5 * sizes[2]});
-    };
-    Mesh lower = body(), upper = body();
-    double top = -INFINITY, bottom = INFINITY;
-    for (const Vector& X : lower.points) top = std::max(top, X[2]);
-    for (const Vector& X : upper.points) bottom = std::min(bottom, X[2]);
-    upper = moved(std::move(upper),
-                  {random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), top - bottom + random.uniform(0.0, 0.1)});
-    const double E = 1e4, waves = std::sqrt(E / 1000.0), speed = waves * random.uniform(0.01, 0.3);
-    TwoBodies bodies(std::move(lower), std::move(upper),
-                     NeoHookean{.young_modulus = E, .poisson_ratio = random.uniform(0.0, 0.49)});
-    const auto method = both_methods[random.uniform(0.0, 1.0) > 0.5 ? 1 : 0];
-    const double friction = random.uniform(-0.5, 0.5) > 0.0 ? random.uniform(0.1, 0.8) : 0.0;
-    Case& d = bodies.description;
-    Contact contact = pair_of("lower", "upper", method, friction);
-    if (method == Contact::Method::penalty) contact.penalty = std::array{1.0, 5.0, 30.0}[at(static_cast<int>(random.uniform(0.0, 2.999)))];
-    d.forces.of<Contact>() = {contact};
-    d.velocities = {{.set = "upper",
-                     .value = {random.uniform(-0.5, 0.5) * speed, random.uniform(-0.5, 0.5) * speed, -speed},
-                     .spin = {random.uniform(-1.0, 1.0) * speed, random.uniform(-1.0, 1.0) * speed,
-                              random.uniform(-1.0, 1.0) * speed}}};
-    d.dynamics.duration = 1.0 / speed;
-    d.dynamics.check_interval = 10;
-    const std::string what = fmt::format("scene {}: method {} (penalty {}), friction {:.2f}, speed {:.3f} of waves",
-                                         number, int(method), contact.penalty, friction, speed / waves);
-    try {
-      const Scene scene = bodies.scene();
-      const Model model(scene, {"tl-perturbation"});
-      Recorder recorder;
-      const Motion motion = integrate(model, recorder);
-      const Gain gain(recorder.rows);
-      const double share = gain.gained / total_energy(recorder.rows.front());
-      double depth = 0.0;
-      for (const auto& row : recorder.rows) depth = std::max(depth, row.depth);
-      if (share > 0.002)
-        fmt::print("{}: gained {:.3g} %, lost {:.3g} %, depth {:.3g}, energy {:.4g} of {:.4g} repeated {}\n", what, 100 * share,
-                   100 * recorder.rows.back().friction / total_energy(recorder.rows.front()),
-                   depth / shortest_edge(scene.mesh), total_energy(recorder.rows.back()), total_energy(recorder.rows.front()), motion.repeated);
-      worst[at(int(method))] = std::max(worst[at(int(method))], share);
-    } catch (const std::exception& error) {
-      ++errors[at(int(method))];
-      fmt::print("{}: {}\n", what, error.what());
+      EXPECT_LT(gain.gained, 0.005 * gain.largest) << fraction;
+      EXPECT_LE(std::abs(recorder.rows.back().friction), 0.1 * gain.largest) << fraction;
     }
   }
-  fmt::print("worst kinematic {:.3g} penalty {:.3g}, errors {} {}\n", worst[0], worst[1], errors[0], errors[1]);
+}
+
+/// A ball slides in a bowl and on a dome, of coarse faces: where faces turn, impulses along the directions at
+/// the ends of steps work on what slides. Kinematic contact never gains energy; the penalty to the error of
+/// its steps, a percent.
+TEST(SurfacePair, gains_no_energy_on_curved_surfaces) {
+  for (const auto method : both_methods) {
+    for (const double curvature : {1.0, -1.0}) {
+      Mesh bowl = lattice({10, 10, 2}, [&](const Vector& s) {
+        const double x = 2.0 * s[0] - 1.0, y = 2.0 * s[1] - 1.0;
+        return Vector{x, y, s[2] * (0.4 + curvature * 0.25 * (x * x + y * y - 1.0))};
+      });
+      const bool in_bowl = curvature > 0.0;
+      TwoBodies bodies(std::move(bowl), moved(ball(0.25, 4), {in_bowl ? 0.5 : 0.02, 0.0, in_bowl ? 0.55 : 0.92}),
+                       NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
+      Case& d = bodies.description;
+      d.displacements = {{"foot", {}}};
+      d.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
+      d.forces.of<Contact>() = {pair_of("upper", "lower", method)};
+      d.dynamics.duration = 2.0;
+      d.dynamics.check_interval = 10;
+      const Scene scene = bodies.scene();
+      Recorder recorder;
+      integrate(Model(scene, {"tl-perturbation"}), recorder);
+      const Gain gain(recorder.rows);
+      const double limit = method == Contact::Method::kinematic ? 1e-9 : 0.01;
+      EXPECT_LT(gain.gained, limit * gain.largest) << curvature;
+    }
+  }
+}
+
+/// Two free bodies, boxes or balls, collide.
+TwoBodies random_collision(RandomGeometry& random) {
+  const auto size = [&] { return random.uniform(0.3, 1.0); };
+  const auto count = [&] { return static_cast<int>(random.uniform(2.0, 4.999)); };
+  const auto body = [&]() -> Mesh {
+    if (random.uniform(0.0, 1.0) > 0.5) return ball(0.5 * size(), std::min(2 * count(), 6));
+    const std::array<double, 3> sizes{size(), size(), size()};
+    return moved(box(sizes, {count(), count(), count()}), {-0.5 * sizes[0], -0.5 * sizes[1], -0.5 * sizes[2]});
+  };
+  Mesh lower = body(), upper = body();
+  const double up = bounding_box(lower.points)[1][2] - bounding_box(upper.points)[0][2];
+  upper = moved(std::move(upper),
+                {random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), up + random.uniform(0.0, 0.1)});
+  const double E = 1e4, speed = std::sqrt(E / 1000.0) * random.uniform(0.01, 0.3);
+  TwoBodies bodies(std::move(lower), std::move(upper),
+                   NeoHookean{.young_modulus = E, .poisson_ratio = random.uniform(0.0, 0.49)});
+  const auto method = both_methods[random.uniform(0.0, 1.0) > 0.5 ? 1 : 0];
+  Contact contact = pair_of("lower", "upper", method, std::max(random.uniform(-0.8, 0.8), 0.0));
+  if (method == Contact::Method::penalty)
+    contact.penalty = std::array{1.0, 5.0, 30.0}[at(static_cast<int>(random.uniform(0.0, 2.999)))];
+  Case& d = bodies.description;
+  d.forces.of<Contact>() = {contact};
+  const auto turn = [&] { return random.uniform(-1.0, 1.0) * speed; };
+  d.velocities = {
+      {.set = "upper", .value = {0.5 * turn(), 0.5 * turn(), -speed}, .spin = {turn(), turn(), turn()}}};
+  d.dynamics.duration = 1.0 / speed;
+  d.dynamics.check_interval = 10;
+  d.dynamics.frames = 20;
+  return bodies;
+}
+
+/// The boundary faces of some nodes.
+std::vector<Quadrilateral> skin_of(const Scene& scene, const std::vector<int>& nodes) {
+  std::vector<Quadrilateral> faces;
+  for (const Quadrilateral& face : scene.boundary) {
+    if (std::ranges::find(nodes, face[0]) != nodes.end()) faces.push_back(face);
+  }
+  return faces;
+}
+
+/// At speeds up to .3 of waves, by both methods, with friction and without: none gains energy beyond half a
+/// percent, which by the penalty is the error of its steps, by the kinematic method friction, whose impulses
+/// do not know those that follow; before, 1.5 % by the kinematic method and 4.2 % by the penalty, where the
+/// closest point jumps at an edge. Momentum and its moment are kept to rounding. No body has its centre in
+/// the other.
+TEST(SurfacePair, collides_at_random) {
+  const long scenes = from_environment("SANDGLASS_SCENES", 200);
+  RandomGeometry random(48);
+  for (long number = 0; number < scenes; ++number) {
+    const TwoBodies bodies = random_collision(random);
+    const Contact& contact = bodies.description.forces.of<Contact>().front();
+    const std::string what =
+        fmt::format("scene {}: {}, penalty {}, friction {:.2f}", number,
+                    words_of(contact.method)[static_cast<std::size_t>(contact.method)], contact.penalty,
+                    contact.friction);
+    Recorder recorder;
+    const Scene scene = bodies.scene();
+    const Model model(scene, {"tl-perturbation"});
+    try {
+      integrate(model, recorder);
+    } catch (const ComputationError& error) {  // it is not silent
+      EXPECT_NE(std::string(error.what()).find("contact 'pair'"), std::string::npos) << what << error.what();
+      continue;
+    }
+    EXPECT_LT(Gain(recorder.rows).gained, 0.005 * total_energy(recorder.rows.front())) << what;
+    const auto &first = recorder.frames.front(), &last = recorder.frames.back();
+    const Momentum before(model, first.u, first.v), after(model, last.u, last.v);
+    EXPECT_LT(distance(before.linear, after.linear), 1e-12 * length(before.linear)) << what;
+    EXPECT_LT(distance(before.angular, after.angular), 1e-11 * length(before.linear)) << what;
+    for (const Frame& frame : recorder.frames) {
+      NodalField x = scene.mesh.points;
+      for (std::size_t n = 0; n < x.size(); ++n) x[n] = sum(x[n], 1.0, frame.u[n]);
+      for (const auto& [one, other] : {std::pair{"lower", "upper"}, {"upper", "lower"}}) {
+        const auto& nodes = scene.sets.at(one);
+        Vector centre{};
+        for (const int n : nodes) centre = sum(centre, 1.0 / static_cast<double>(nodes.size()), x[at(n)]);
+        EXPECT_LT(winding_number(centre, skin_of(scene, scene.sets.at(other)), x), 0.5) << what;
+      }
+    }
+  }
 }
 
 }  // namespace

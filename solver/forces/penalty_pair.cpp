@@ -100,6 +100,10 @@ class PenaltyPair final : public SurfacePair {
       along = difference(foot.x, MovingSurface::position(corners, anchor, onto));
       const Vector inwards = difference(foot.x, x);
       along = sum(along, -dot(along, inwards) / dot(inwards, inwards), inwards);
+      // Where the closest point jumps, the point does not slip that far.
+      const Vector before{stretch[0], stretch[1], stretch[2]}, change = difference(along, before);
+      const double way = length(change), most = memory.others[0][last_way];
+      if (way > most) along = sum(before, most / way, change);
     } else {
       stretch = {};
     }
