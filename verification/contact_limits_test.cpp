@@ -13,7 +13,9 @@ namespace {
 constexpr double modulus = 1e4, density = 1000.0;
 const double wave_speed = std::sqrt(modulus / density);
 
-NeoHookean law() { return {.young_modulus = modulus, .poisson_ratio = 0.3}; }
+NeoHookean law() {
+  return {.young_modulus = modulus, .poisson_ratio = 0.3};
+}
 
 /// The message of an error; empty if there is none.
 template <class Error, class Make>
@@ -41,7 +43,8 @@ TEST(ContactLimits, refuses_bodies_that_overlap) {
   for (const auto method : both_methods) {
     const Contact all = pair_of("lower", "upper", method), faces = pair_of("under", "over", method);
     const Mesh cube = box({1.0, 1.0, 1.0}, {4, 4, 4});
-    const std::string overlap = "is within the other body at the start; allowed: bodies that do not intersect";
+    const std::string overlap =
+        "is within the other body at the start; allowed: bodies that do not intersect";
     expect_in(message(cube, moved(cube, {0.1, 0.07, 0.5}), faces), overlap);
     expect_in(message(cube, moved(cube, {0.1, 0.07, 0.5}), all), overlap);
     const Mesh small = moved(box({0.1, 0.1, 0.1}, {2, 2, 2}), {0.45, 0.45, 0.45});
@@ -105,15 +108,16 @@ TEST(ContactLimits, reports_fast_bodies) {
   }
 }
 
-/// The same for a node and a small obstacle, and for a ball that is pressed deeper than it can push back from:
-/// beyond its centre it would pull.
+/// The same for a node and a small obstacle, and for a ball that is pressed deeper than it can push back
+/// from: beyond its centre it would pull.
 TEST(ContactLimits, reports_nodes_that_pass_an_obstacle) {
   Column block({1.0, 1.0, 1.0}, {4, 4, 4}, law());
   block.description.quasi_static = false;
   block.description.dynamics.check_interval = 1;
   block.description.dynamics.duration = 0.5 / wave_speed;
   block.description.velocities = {{.set = "", .value = {0.0, 0.0, -0.5 * wave_speed}}};
-  Obstacle pearl{.label = "pearl", .set = "foot", .shape = Obstacle::Shape::sphere, .point = {0.5, 0.5, -0.021}};
+  Obstacle pearl{
+      .label = "pearl", .set = "foot", .shape = Obstacle::Shape::sphere, .point = {0.5, 0.5, -0.021}};
   pearl.radius = 0.02;
   block.description.forces.of<Obstacle>() = {pearl};
   expect_in(run(block.scene()), "contact 'pearl': node");

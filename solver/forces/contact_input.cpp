@@ -30,8 +30,8 @@ double winding_number(const Vector& x, const std::vector<Quadrilateral>& faces, 
     for (const std::size_t k : {1U, 2U}) {  // two triangles
       const Vector a = difference(X[0], x), b = difference(X[k], x), c = difference(X[k + 1], x);
       const double A = length(a), B = length(b), C = length(c);
-      angle += 2.0 * std::atan2(dot(a, cross(b, c)),
-                                A * B * C + dot(a, b) * C + dot(a, c) * B + dot(b, c) * A);
+      angle +=
+          2.0 * std::atan2(dot(a, cross(b, c)), A * B * C + dot(a, b) * C + dot(a, c) * B + dot(b, c) * A);
     }
   }
   return angle / (4.0 * std::numbers::pi);

@@ -10,10 +10,9 @@ namespace sandglass {
 namespace {
 
 /// Points remember also the weights of the point of the face that they meet; the direction to it where the
-/// step starts and their impulse along it, kg m; their impulse along the face, kg m; the direction to it where
-/// the step ends. Nodes remember their motion in the last step, and how
-/// far the contact moves them in this one, m. The strength of points that touch is one more than the number
-/// of the triangle of the face.
+/// step starts and their impulse along it, kg m; their impulse along the face, kg m; the direction to it
+/// where the step ends. Nodes remember their motion in the last step, and how far the contact moves them in
+/// this one, m. The strength of points that touch is one more than the number of the triangle of the face.
 class KinematicPair final : public SurfacePair {
  public:
   KinematicPair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
@@ -207,7 +206,8 @@ class KinematicPair final : public SurfacePair {
         });
     if (!(along_n > 0.0)) return 0.0;
     double& impulse = meeting.normal[3];
-    const double before = std::exchange(impulse, std::max(0.0, impulse - std::max(dot(apart, end), dot(motion, n) + dot(last, n)) / along_n));
+    const double before = std::exchange(
+        impulse, std::max(0.0, impulse - std::max(dot(apart, end), dot(motion, n) + dot(last, n)) / along_n));
     Vector change = sum({}, impulse - before, n);
     if (contact_.friction > 0.0) {
       const Vector old{meeting.along[0], meeting.along[1], meeting.along[2]};

@@ -49,13 +49,14 @@ class MovingSurface {
 
   std::size_t rows() const { return 2 * nodes_.size() + tree_.rows(); }
 
-  /// Moves it to displacements u (m), and extends `motions` by those of its nodes.
+  /// Moves it to displacements u (m), and extends `motions` by those of its nodes, at first
+  /// from the undeformed body.
   template <class Displacements>
-  void move(const Displacements& u, Row<double>* rows, Motions& motions) const {
+  void move(const Displacements& u, bool is_first, Row<double>* rows, Motions& motions) const {
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       const Row<double>& of_node = u[nodes_[n]];
       for (std::size_t i = 0; i < 3; ++i) {
-        const double x = undeformed_[n][i] + of_node[i], way = x - rows[n][i];
+        const double x = undeformed_[n][i] + of_node[i], way = is_first ? of_node[i] : x - rows[n][i];
         rows[n][i] = x;
         motions.low[i] = std::min(motions.low[i], way);
         motions.high[i] = std::max(motions.high[i], way);
@@ -100,8 +101,8 @@ class MovingSurface {
                                               const std::array<Vector, 4>& now,
                                               const std::array<Vector, 4>& then);
 
-  /// The weights at the projection of x (m) along a direction onto the plane of a triangle of a face with these
-  /// corners (m).
+  /// The weights at the projection of x (m) along a direction onto the plane of a triangle of a face with
+  /// these corners (m).
   static Row<double> weights_along(const std::array<Vector, 4>& corners, std::size_t triangle,
                                    const Vector& x, const Vector& direction);
 

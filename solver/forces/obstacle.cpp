@@ -83,9 +83,10 @@ void Obstacle::resolve(ForceResolver& resolver) const {
     touching.push_back({node, resolver.points[at(node)], scale.stiffness(penalty) * area});
   }
   if (touching.empty()) {
-    throw InputError(fmt::format("{}: {} '{}': all nodes of set '{}' are held or driven, and feel no obstacle; "
-                                 "allowed: a set with nodes that may move",
-                                 resolver.file, name, label, set));
+    throw InputError(
+        fmt::format("{}: {} '{}': all nodes of set '{}' are held or driven, and feel no obstacle; "
+                    "allowed: a set with nodes that may move",
+                    resolver.file, name, label, set));
   }
   const Vector start = sum({}, curve.at(0.0, 0.0), displacement);
   const auto make = method == Method::penalty ? make_penalty_contact : make_kinematic_contact;
@@ -100,9 +101,10 @@ void Obstacle::resolve(ForceResolver& resolver) const {
   }
   const Vector place = contact->point_of_shape();
   if (std::isfinite(place[0]) && !inside && winding_number(place, resolver.boundary, resolver.points) > 0.5) {
-    throw InputError(fmt::format("{}: {} '{}': its point ({:.6g}, {:.6g}, {:.6g}) m is within the body at the "
-                                 "start; allowed: an obstacle outside of it",
-                                 resolver.file, name, label, place[0], place[1], place[2]));
+    throw InputError(
+        fmt::format("{}: {} '{}': its point ({:.6g}, {:.6g}, {:.6g}) m is within the body at the "
+                    "start; allowed: an obstacle outside of it",
+                    resolver.file, name, label, place[0], place[1], place[2]));
   }
   resolver.forces.push_back(std::move(contact));
 }

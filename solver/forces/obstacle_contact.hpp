@@ -35,10 +35,10 @@ class ObstacleContact : public ContactForce {
   /// A point of the obstacle at the start, m; NaN of shapes without end, which reach out of any body.
   Vector point_of_shape() const {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const Vector point = obstacle_.shape == Obstacle::Shape::surface
-                             ? std::get<SurfaceShape>(shape_).point()
-                             : obstacle_.point;
-    const bool ends = obstacle_.shape != Obstacle::Shape::plane && obstacle_.shape != Obstacle::Shape::cylinder;
+    const Vector point = obstacle_.shape == Obstacle::Shape::surface ? std::get<SurfaceShape>(shape_).point()
+                                                                     : obstacle_.point;
+    const bool ends =
+        obstacle_.shape != Obstacle::Shape::plane && obstacle_.shape != Obstacle::Shape::cylinder;
     return ends ? sum(point, 1.0, start_) : Vector{none, none, none};
   }
 

@@ -33,8 +33,7 @@ class PenaltyPair final : public SurfacePair {
                                      : foot.weights;
       remembered[0][strength] = stiffness;
       const Quadrilateral& corners = onto.corners(foot.face);
-      const Vector pull =
-          sum({}, pushes, difference(MovingSurface::position(corners, anchor, of_onto), x));
+      const Vector pull = sum({}, pushes, difference(MovingSurface::position(corners, anchor, of_onto), x));
       memory.pushes[3] += 0.5 * stiffness * dot(pull, pull);
       for (std::size_t i = 0; i < 3; ++i) {
         const double force = stiffness * pull[i];

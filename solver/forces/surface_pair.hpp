@@ -99,11 +99,12 @@ void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, 
   double& way = of_pair[way_so_far];
   const bool is_first = way == 0.0;
   Motions motions;
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) surfaces_[s].move(u, of_surface(memory, s), motions);
+  for (std::size_t s = 0; s < surfaces_.size(); ++s)
+    surfaces_[s].move(u, is_first, of_surface(memory, s), motions);
   of_pair[last_way] = is_first ? INFINITY : motions.largest_relative();
   way += is_first ? given_.reach : of_pair[last_way];
   // Within one step, points of fast bodies may pass deeper than the reach.
-  const double range = is_first ? given_.reach : std::max(given_.reach, of_pair[last_way]);
+  const double range = std::max(given_.reach, motions.largest_relative());
   bool fits = false;
   for (const Side& side : sides_) {
     const MovingSurface &from = surfaces_[side.from], &onto = surfaces_[side.onto];
