@@ -222,7 +222,7 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
     fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}",
                100.0 * history.unexplained_share(damping), damping > 0.0 ? ", after damping" : "");
   }
-  if (row.friction != 0.0) fmt::print(", lost to friction {:.3g}", row.friction);
+  if (row.friction != 0.0) fmt::print(", lost in contact {:.3g}", row.friction);
   fmt::print("\n");
   if (!contacts_of(scene.forces).empty()) {
     const double depth = history.largest_depth(quasi_static);

@@ -145,6 +145,9 @@ class Answer : public NeverUnmade {
     add("external_work", &HistoryRow::external_work);
     add("residual", &HistoryRow::residual);
     add("step_size", &HistoryRow::step_size);
+    add("contact_energy", &HistoryRow::contact);
+    add("friction_loss", &HistoryRow::friction);
+    add("depth", &HistoryRow::depth);
     return columns;
   }
 

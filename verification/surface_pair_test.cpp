@@ -14,24 +14,12 @@
 #include "solve/relaxation.hpp"
 #include "support/allocations.hpp"
 #include "support/kept_run.hpp"
+#include "support/momentum.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/two_bodies.hpp"
 
 namespace sandglass::verification {
 namespace {
-
-/// The sums of m v and m x cross v.
-struct Momentum {
-  Vector linear{}, angular{};
-
-  Momentum(const Model& model, const NodalField& u, const NodalField& v) {
-    for (std::size_t n = 0; n < v.size(); ++n) {
-      const Vector x = sum(model.scene().mesh.points[n], 1.0, u[n]);
-      linear = sum(linear, model.masses()[n], v[n]);
-      angular = sum(angular, model.masses()[n], cross(x, v[n]));
-    }
-  }
-};
 
 /// A box falls obliquely, turning, onto the corner region of another; neither is held.
 TwoBodies collision(Contact::Method method, double friction) {
@@ -67,7 +55,7 @@ TEST(SurfacePair, keeps_momentum) {
         largest_force = std::max(largest_force, -row.reactions.at("pair")[2]);
       }
       EXPECT_GT(largest_force, 100.0);
-      EXPECT_EQ(recorder.rows.back().friction > 0.06 * energy, friction > 0.0);
+      EXPECT_EQ(recorder.rows.back().friction > 0.07 * energy, friction > 0.0);
     }
   }
 }

@@ -40,12 +40,16 @@ void Contact::resolve(ForceResolver& resolver) const {
     }
   }
   const ContactScale scale(resolver, all);
-  auto pair = make_surface_pair(*this, {std::move(surfaces), scale.stiffness(penalty), scale.edge},
-                                resolver.points, resolver.cells);
+  auto pair = make_surface_pair(*this, {surfaces, scale.stiffness(penalty), scale.edge}, resolver.points,
+                                resolver.cells);
   if (const auto deepest = pair->deepest_at_start(); deepest && deepest->depth > scale.rounding()) {
     refuse_at(deepest->node,
               fmt::format("is {:.3g} m inside of what it may touch at the start", deepest->depth),
               "surfaces that do not intersect");
+  }
+  for (std::size_t s = 0; s < surfaces.size() && surfaces.size() > 1; ++s) {  // deeper than the pair follows
+    const int node = node_within_other_body(resolver, surfaces[s], surfaces[1 - s]);
+    if (node >= 0) refuse_at(node, "is within the other body at the start", "bodies that do not intersect");
   }
   resolver.forces.push_back(std::move(pair));
 }

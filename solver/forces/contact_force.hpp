@@ -20,7 +20,7 @@ struct Touch {
   double dissipated = 0.0;     ///< since the start, J
   double worked = 0.0;         ///< by an obstacle that moves nodes, since the start, J
   int contrary = 0;            ///< nodes whose fixed contact pulls them, or lets them penetrate
-  int passed = -1;             ///< a node that went deeper than the contact can follow; -1: none
+  int passed = -1;             ///< a node that may have passed through since the start; -1: none
 };
 
 /// The rows that every contact keeps, before its own.
@@ -28,11 +28,14 @@ struct ContactMemory {
   Row<double>& pushes;  ///< force as in Touch, N; stored energy, J
   Row<double>& moves;   ///< displacement of the obstacle, m; largest depth, m
   Row<double>& sums;    ///< dissipated energy and work since the start, J; contrary nodes; whether fixed
+  Row<double>& passes;  ///< one more than the number of a node that may have passed through
   Row<double>* others;
 
-  static constexpr std::size_t own = 3;
+  static constexpr std::size_t own = 4;
   explicit ContactMemory(Row<double>* rows)
-      : pushes(rows[0]), moves(rows[1]), sums(rows[2]), others(rows + own) {}
+      : pushes(rows[0]), moves(rows[1]), sums(rows[2]), passes(rows[3]), others(rows + own) {}
+
+  void note_passed(int node) { passes[0] = 1.0 + static_cast<double>(node); }
 };
 
 inline Touch touch_of(std::string_view name, const Row<double>* memory) {
@@ -44,8 +47,12 @@ inline Touch touch_of(std::string_view name, const Row<double>* memory) {
           pushes[3],
           sums[0],
           sums[1],
-          static_cast<int>(sums[2])};
+          static_cast<int>(sums[2]),
+          static_cast<int>(memory[3][0]) - 1};
 }
+
+/// The share of the depth that a contact can follow from which no step leads to the outside.
+constexpr double deep = 0.8;
 
 /// The square of the frequency that steps must allow for over that of a spring that only pushes: it returns a
 /// node with more than its energy if the step ends its contact too late. With steps of 1.8 over its

@@ -25,6 +25,7 @@ struct ForceResolver {
   std::span<const Hexahedron> cells = {};
   std::vector<double> young_moduli = {};  ///< of elements, of the undeformed material, Pa
   std::vector<bool> tied = {};            ///< whether a node follows others; empty: none
+  std::vector<bool> held = {};            ///< whether all components of a node are imposed; empty: none
 
   /// The nodes of the set that a table names with a key. Throws InputError if there is no such set or it is
   /// empty.

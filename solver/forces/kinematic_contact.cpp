@@ -30,6 +30,7 @@ class KinematicContact final : public ObstacleContact {
       Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
       if (position[3] == 0.0)  // the force of the first step acts for half of it
         last = {{0.5 * motion[0], 0.5 * motion[1], 0.5 * motion[2], 0.0}};
+      if (gap.distance < -deep * half_thickness() || leaps(gap, x, motion)) memory.note_passed(node);
       if (gap.distance < 0.0) {
         const Row<double>& w = nodes.inverse_masses[node];
         const Vector change = correction(gap, direction(gap, difference(x, motion)), motion, w);
@@ -75,6 +76,16 @@ class KinematicContact final : public ObstacleContact {
 
   std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
     return make_kinematic_contact(std::move(nodes), obstacle_, shape_, curve_, start_);
+  }
+
+  /// Whether a node that moves by more than half the thickness in a step passes through the obstacle.
+  bool leaps(const Gap& end, const Vector& x, const Vector& motion) const {
+    const double way = length(motion), half = half_thickness();
+    if (!(way > half) || end.distance < 0.0 || end.distance > way) return false;
+    for (double from_end = half; from_end < way; from_end += half) {
+      if (gap_at(sum(x, -from_end / way, motion)).distance < -rounding_) return true;
+    }
+    return false;
   }
 
   /// The direction of the force on a node: the normal where the step starts, as forces act there. Over the

@@ -9,15 +9,15 @@ namespace sandglass {
 
 namespace {
 
-/// Points remember also the weights of the point of the face that they meet; the direction to it and their
-/// impulse, kg m; their impulse along the face, kg m. Nodes remember their motion in the last step, and how
-/// far the contact moves them in this one, m. The strength of points that touch is one more than the number
-/// of the triangle of the face.
+/// Points remember also the weights of the point of the face that they meet; the direction to it where the
+/// step starts and their impulse along it, kg m; their impulse along the face, kg m; the direction to it
+/// where the step ends. Nodes remember their motion in the last step, and how far the contact moves them in
+/// this one, m. The strength of points that touch is one more than the number of the triangle of the face.
 class KinematicPair final : public SurfacePair {
  public:
   KinematicPair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
                 std::span<const Hexahedron> cells)
-      : SurfacePair(contact, std::move(given), points, cells, 4, 2) {}
+      : SurfacePair(contact, std::move(given), points, cells, 5, 2) {}
 
   bool moves_nodes() const override { return true; }
 
@@ -31,10 +31,13 @@ class KinematicPair final : public SurfacePair {
     const auto use = [&](const Side& side, std::size_t k, const Vector& x, const SurfaceFoot& foot) {
       Row<double>* remembered = of_point(memory, side, k);
       const bool is_new = remembered[0][strength] == 0.0;
-      const Vector n = direction_of(difference(foot.x, x), foot.distance());
       remembered[0][touched_face] = foot.face;
       remembered[0][strength] = 1.0 + static_cast<double>(foot.triangle);
-      remembered[1] = weights_before(meeting_of(side, k, memory), n, nodes);
+      const Meeting meeting = meeting_of(side, k, memory);
+      const auto [end, n] = MovingSurface::directions(
+          foot, x, meeting.onto.corners_now(foot.face, meeting.of_onto), meeting.corners_before(nodes));
+      remembered[4] = {{end[0], end[1], end[2]}};
+      remembered[1] = weights_before(meeting, n, nodes);
       remembered[2] = {{n[0], n[1], n[2], is_new ? 0.0 : remembered[2][3]}};
       const Vector along{remembered[3][0], remembered[3][1], remembered[3][2]};
       const Vector kept = is_new ? Vector{} : sum(along, -dot(along, n), n);
@@ -78,12 +81,27 @@ class KinematicPair final : public SurfacePair {
     const Quadrilateral& corners;
     const Row<double>& weights;  // of the corners
     Row<double>&normal, &along;  // with the impulses
+    const Row<double>& end;      // normal
     Row<double>*of_from, *of_onto, *nodes_from, *nodes_onto;
 
     std::size_t triangle;  // of the face
 
     Vector direction() const { return {normal[0], normal[1], normal[2]}; }
+    Vector direction_at_end() const { return {end[0], end[1], end[2]}; }
     Vector impulse() const { return sum({along[0], along[1], along[2]}, normal[3], direction()); }
+
+    std::array<Vector, 4> corners_before(const NodalPush& step) const {
+      std::array<Vector, 4> x;
+      for (std::size_t I = 0; I < 4; ++I) x[I] = before(onto, of_onto, corners[I], step);
+      return x;
+    }
+
+    /// Where a node of a surface is before the step, m.
+    static Vector before(const MovingSurface& surface, const Row<double>* rows, int place,
+                         const NodalPush& step) {
+      const Row<double>&x = rows[place], &increment = step.increment[surface.nodes()[at(place)]];
+      return {x[0] - increment[0], x[1] - increment[1], x[2] - increment[2]};
+    }
 
     /// Calls use(node, place, weight, rows of its surface, rows of nodes) for all nodes of both.
     template <class Use>
@@ -122,6 +140,7 @@ class KinematicPair final : public SurfacePair {
             remembered[1],
             remembered[2],
             remembered[3],
+            remembered[4],
             of_surface(memory, side.from),
             of_surface(memory, side.onto),
             of_nodes(memory, side.from),
@@ -132,17 +151,12 @@ class KinematicPair final : public SurfacePair {
   /// The weights of the point of the face that was in a direction from the point before the step: an impulse
   /// along it has no moment.
   static Row<double> weights_before(const Meeting& meeting, const Vector& direction, const NodalPush& nodes) {
-    const auto before = [&](const MovingSurface& surface, const Row<double>* rows, int place) {
-      const Row<double>&x = rows[place], &increment = nodes.increment[surface.nodes()[at(place)]];
-      return Vector{x[0] - increment[0], x[1] - increment[1], x[2] - increment[2]};
-    };
     Vector x{};
-    std::array<Vector, 4> corners;
     for (std::size_t I = 0; I < 4; ++I) {
-      x = sum(x, meeting.point.weights[I], before(meeting.from, meeting.of_from, meeting.point.nodes[I]));
-      corners[I] = before(meeting.onto, meeting.of_onto, meeting.corners[I]);
+      x = sum(x, meeting.point.weights[I],
+              Meeting::before(meeting.from, meeting.of_from, meeting.point.nodes[I], nodes));
     }
-    return MovingSurface::weights_along(corners, meeting.triangle, x, direction);
+    return MovingSurface::weights_along(meeting.corners_before(nodes), meeting.triangle, x, direction);
   }
 
   /// Moves a node by its share of an impulse, kg m: its displacement, its position `x` on the surface and how
@@ -176,22 +190,24 @@ class KinematicPair final : public SurfacePair {
 
   /// Changes the impulse of a point so that it is on the face. Returns by how much it moves, m.
   double separate(const Meeting& meeting, const NodalPush& nodes) const {
-    const Vector n = meeting.direction();
-    Vector apart{}, motion{};
-    double along_n = 0.0, mobility = 0.0;  // 1/kg, along n and in the mean
+    const Vector n = meeting.direction(), end = meeting.direction_at_end();
+    Vector apart{}, motion{}, last{};
+    double along_n = 0.0, mobility = 0.0;  // 1/kg, of an impulse along n, and in the mean
     meeting.for_each_node(
-        [&](int node, std::size_t place, double weight, const Row<double>* x, Row<double>*) {
+        [&](int node, std::size_t place, double weight, const Row<double>* x, Row<double>* rows) {
           const Row<double>&w = nodes.inverse_masses[node], &increment = nodes.increment[node];
           for (std::size_t i = 0; i < 3; ++i) {
+            last[i] += weight * rows[2 * place][i];
             apart[i] += weight * x[place][i];
             motion[i] += weight * increment[i];
-            along_n += weight * weight * w[i] * n[i] * n[i];
+            along_n += weight * weight * w[i] * n[i] * end[i];
             mobility += weight * weight * w[i] / 3.0;
           }
         });
     if (!(along_n > 0.0)) return 0.0;
     double& impulse = meeting.normal[3];
-    const double before = std::exchange(impulse, std::max(0.0, impulse - dot(apart, n) / along_n));
+    const double before = std::exchange(
+        impulse, std::max(0.0, impulse - std::max(dot(apart, end), dot(motion, n) + dot(last, n)) / along_n));
     Vector change = sum({}, impulse - before, n);
     if (contact_.friction > 0.0) {
       const Vector old{meeting.along[0], meeting.along[1], meeting.along[2]};
@@ -231,11 +247,11 @@ class KinematicPair final : public SurfacePair {
       }
     }
     of_pair[has_moved] = 1.0;
-    of_pair[way_so_far] += std::sqrt(3.0) * farthest;
+    of_pair[way_so_far] += 2.0 * std::sqrt(3.0) * farthest;
     memory.moves[3] = for_each_meeting(memory, [](const Meeting& meeting) {  // what is left
       double apart = 0.0;
       meeting.for_each_node([&](int, std::size_t place, double weight, const Row<double>* x, Row<double>*) {
-        for (std::size_t i = 0; i < 3; ++i) apart -= weight * x[place][i] * meeting.normal[i];
+        for (std::size_t i = 0; i < 3; ++i) apart -= weight * x[place][i] * meeting.end[i];
       });
       return apart;
     });

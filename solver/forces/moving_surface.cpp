@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "forces/obstacle_shape.hpp"
 #include "forces/triangle_foot.hpp"
 
 namespace sandglass {
@@ -55,6 +56,13 @@ Vector normal_of(const std::array<Vector, 4>& x) {
 std::array<Vector, 3> triangle_of(const std::array<Vector, 4>& x, std::size_t k) {
   const Vector centre = sum(sum(sum(sum({}, 0.25, x[0]), 0.25, x[1]), 0.25, x[2]), 0.25, x[3]);
   return {x[k], x[(k + 1) % 4], centre};
+}
+
+/// Unit vectors along the first edge of a triangle, normal to it, and across.
+std::array<Vector, 3> frame_of(const std::array<Vector, 3>& X) {
+  const Vector edge = difference(X[1], X[0]), up = cross(edge, difference(X[2], X[0]));
+  const Vector along = direction_of(edge, length(edge)), normal = direction_of(up, length(up));
+  return {along, normal, cross(normal, along)};
 }
 
 /// The weights of the corners of a face, from those of its k-th triangle.
@@ -181,6 +189,21 @@ Row<double> MovingSurface::weights_at(const SurfaceFoot& foot, const Vector& x,
                                       const Row<double>* rows) const {
   const auto triangle = triangle_of(corners_now(foot.face, rows), foot.triangle);
   return of_corners(plane_weights(triangle, x), foot.triangle);
+}
+
+std::pair<Vector, Vector> MovingSurface::directions(const SurfaceFoot& foot, const Vector& x,
+                                                    const std::array<Vector, 4>& now,
+                                                    const std::array<Vector, 4>& then) {
+  const auto of_now = frame_of(triangle_of(now, foot.triangle)),
+             of_then = frame_of(triangle_of(then, foot.triangle));
+  constexpr double rounding = 1e-6;  // of the edge: closer points have no direction of their own
+  const double depth = foot.distance();
+  if (!(depth > rounding * distance(now[foot.triangle], now[(foot.triangle + 1) % 4])))
+    return {of_now[1], of_then[1]};
+  const Vector direction = direction_of(difference(foot.x, x), depth);
+  Vector turned{};
+  for (std::size_t i = 0; i < 3; ++i) turned = sum(turned, dot(direction, of_now[i]), of_then[i]);
+  return {direction, turned};
 }
 
 Row<double> MovingSurface::weights_along(const std::array<Vector, 4>& corners, std::size_t triangle,

@@ -25,6 +25,14 @@ struct SurfaceFoot {
   double distance() const { return std::sqrt(square); }
 };
 
+/// The least and the largest motion of nodes along each axis, m.
+struct Motions {
+  Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+
+  /// No two nodes move by more (m) relative to each other.
+  double largest_relative() const { return length(difference(high, low)); }
+};
+
 /// Boundary faces of a deformable body where it is now. Faces are four triangles about their middles. What
 /// changes is in rows that the caller keeps, zeros at the start.
 class MovingSurface {
@@ -41,21 +49,19 @@ class MovingSurface {
 
   std::size_t rows() const { return 2 * nodes_.size() + tree_.rows(); }
 
-  /// Moves it to displacements u (m). Returns the largest distance (m) by which a node moved.
+  /// Moves it to displacements u (m), and extends `motions` by those of its nodes, at first
+  /// from the undeformed body.
   template <class Displacements>
-  double move(const Displacements& u, Row<double>* rows) const {
-    double most = 0.0;
+  void move(const Displacements& u, bool is_first, Row<double>* rows, Motions& motions) const {
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       const Row<double>& of_node = u[nodes_[n]];
-      double square = 0.0;
       for (std::size_t i = 0; i < 3; ++i) {
-        const double x = undeformed_[n][i] + of_node[i], way = x - rows[n][i];
+        const double x = undeformed_[n][i] + of_node[i], way = is_first ? of_node[i] : x - rows[n][i];
         rows[n][i] = x;
-        square += way * way;
+        motions.low[i] = std::min(motions.low[i], way);
+        motions.high[i] = std::max(motions.high[i], way);
       }
-      most = std::max(most, square);
     }
-    return std::sqrt(most);
   }
 
   /// Fits normals and the tree to the present position, as `closest` needs them.
@@ -70,6 +76,9 @@ class MovingSurface {
   Vector normal(const Quadrilateral& nodes, const Row<double>& weights, const Row<double>* rows) const {
     return mean(nodes, weights, rows + nodes_.size());
   }
+
+  /// Where the corners of a face are now, m.
+  std::array<Vector, 4> corners_now(int face, const Row<double>* rows) const;
 
   /// The undeformed area of a face, m^2.
   double area(int face) const { return areas_[at(face)]; }
@@ -86,8 +95,14 @@ class MovingSurface {
   /// also beyond the triangle.
   Row<double> weights_at(const SurfaceFoot& foot, const Vector& x, const Row<double>* rows) const;
 
-  /// The same at the projection of x (m) along a direction onto the plane of a triangle of a face with these
-  /// corners (m).
+  /// The direction from a point x (m) behind a face to its foot, of length one, as the triangle has it when
+  /// the corners of the face are at `now` and when they are at `then` (m).
+  static std::pair<Vector, Vector> directions(const SurfaceFoot& foot, const Vector& x,
+                                              const std::array<Vector, 4>& now,
+                                              const std::array<Vector, 4>& then);
+
+  /// The weights at the projection of x (m) along a direction onto the plane of a triangle of a face with
+  /// these corners (m).
   static Row<double> weights_along(const std::array<Vector, 4>& corners, std::size_t triangle,
                                    const Vector& x, const Vector& direction);
 
@@ -100,7 +115,6 @@ class MovingSurface {
     return sum_of_all;
   }
 
-  std::array<Vector, 4> corners_now(int face, const Row<double>* rows) const;
   void set_behind(const Vector& x, SurfaceFoot& foot, const Row<double>* rows) const;
 
   std::vector<int> nodes_;

@@ -78,8 +78,16 @@ void Obstacle::resolve(ForceResolver& resolver) const {
     }
   }
   std::vector<TouchingNode> touching;
-  for (const auto& [node, area] : areas)
+  for (const auto& [node, area] : areas) {
+    if (!resolver.held.empty() && resolver.held[at(node)]) continue;  // the obstacle cannot push it
     touching.push_back({node, resolver.points[at(node)], scale.stiffness(penalty) * area});
+  }
+  if (touching.empty()) {
+    throw InputError(
+        fmt::format("{}: {} '{}': all nodes of set '{}' are held or driven, and feel no obstacle; "
+                    "allowed: a set with nodes that may move",
+                    resolver.file, name, label, set));
+  }
   const Vector start = sum({}, curve.at(0.0, 0.0), displacement);
   const auto make = method == Method::penalty ? make_penalty_contact : make_kinematic_contact;
   auto contact =
@@ -90,6 +98,13 @@ void Obstacle::resolve(ForceResolver& resolver) const {
     refuse_node(resolver, name, label, deepest.node,
                 fmt::format("is {:.3g} m inside of it at the start", depth),
                 fmt::format("a body that is {} of it", inside ? "within" : "outside"));
+  }
+  const Vector place = contact->point_of_shape();
+  if (std::isfinite(place[0]) && !inside && winding_number(place, resolver.boundary, resolver.points) > 0.5) {
+    throw InputError(
+        fmt::format("{}: {} '{}': its point ({:.6g}, {:.6g}, {:.6g}) m is within the body at the "
+                    "start; allowed: an obstacle outside of it",
+                    resolver.file, name, label, place[0], place[1], place[2]));
   }
   resolver.forces.push_back(std::move(contact));
 }

@@ -32,6 +32,16 @@ class ObstacleContact : public ContactForce {
   /// Of a node inside the obstacle, m; negative outside.
   double depth_at_start(const TouchingNode& one) const { return -gap_at(difference(one.X, start_)).distance; }
 
+  /// A point of the obstacle at the start, m; NaN of shapes without end, which reach out of any body.
+  Vector point_of_shape() const {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const Vector point = obstacle_.shape == Obstacle::Shape::surface ? std::get<SurfaceShape>(shape_).point()
+                                                                     : obstacle_.point;
+    const bool ends =
+        obstacle_.shape != Obstacle::Shape::plane && obstacle_.shape != Obstacle::Shape::cylinder;
+    return ends ? sum(point, 1.0, start_) : Vector{none, none, none};
+  }
+
   double half_thickness() const final {
     if (obstacle_.inside) return INFINITY;
     return std::visit([](const auto& shape) { return shape.half_thickness(); }, shape_);

@@ -38,6 +38,7 @@ class PenaltyContact final : public ObstacleContact {
       }
       if (!touches) return;
       const double depth = -gap.distance;
+      if (depth > deep * half_thickness()) memory.note_passed(node);
       memory.pushes[3] += 0.5 * stiffness * depth * (depth + 2.0 * constant);
       memory.moves[3] = std::max(memory.moves[3], depth);
       Vector force = sum({}, stiffness * (depth + constant), gap.normal);

@@ -6,13 +6,15 @@ namespace sandglass {
 
 namespace {
 
-/// With friction, points remember also the weights of the point of the face to which a spring pulls them, and
+/// Points remember also a depth that does not push: where the closest point jumps, as at a rim or an edge,
+/// the depth grows by more than the surfaces move, and a spring of this length would come from nothing.
+/// With friction, they remember the weights of the point of the face to which a spring pulls them, and
 /// its extension along the face, m. Their strength is the stiffness of the spring, N/m.
 class PenaltyPair final : public SurfacePair {
  public:
   PenaltyPair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
               std::span<const Hexahedron> cells)
-      : SurfacePair(contact, std::move(given), points, cells, contact.friction > 0.0 ? 3 : 1, 0) {}
+      : SurfacePair(contact, std::move(given), points, cells, contact.friction > 0.0 ? 4 : 2, 0) {}
 
   void add_contact(Factors /*factors*/, NodalRows u, Row<double>* rows,
                    AtNodes<Row<double>> forces) const override {
@@ -25,12 +27,13 @@ class PenaltyPair final : public SurfacePair {
       const double stiffness = 0.5 * given_.stiffness * std::min(point.area, onto.area(foot.face));
       memory.moves[3] = std::max(memory.moves[3], foot.distance());
       Row<double>* remembered = of_point(memory, side, k);
+      const double pushes = share_of_depth(foot.distance(), stiffness, remembered, memory);
       const Row<double> anchor = contact_.friction > 0.0
-                                     ? hold(x, foot, stiffness, remembered, of_onto, memory, onto)
+                                     ? hold(x, foot, pushes * stiffness, remembered, of_onto, memory, onto)
                                      : foot.weights;
       remembered[0][strength] = stiffness;
       const Quadrilateral& corners = onto.corners(foot.face);
-      const Vector pull = difference(MovingSurface::position(corners, anchor, of_onto), x);
+      const Vector pull = sum({}, pushes, difference(MovingSurface::position(corners, anchor, of_onto), x));
       memory.pushes[3] += 0.5 * stiffness * dot(pull, pull);
       for (std::size_t i = 0; i < 3; ++i) {
         const double force = stiffness * pull[i];
@@ -41,9 +44,10 @@ class PenaltyPair final : public SurfacePair {
         if (side.from != side.onto) memory.pushes[i] += side.from == 0 ? force : -force;
       }
     };
-    for_each_touch(u, memory, use, [&](const Row<double>* remembered) {
+    for_each_touch(u, memory, use, [&](Row<double>* remembered) {
+      share_of_depth(0.0, remembered[0][strength], remembered, memory);
       if (contact_.friction == 0.0) return;
-      const Row<double>& stretch = remembered[2];
+      const Row<double>& stretch = remembered[3];
       for (std::size_t i = 0; i < 3; ++i)
         memory.sums[0] += 0.5 * remembered[0][strength] * stretch[i] * stretch[i];
     });
@@ -72,16 +76,33 @@ class PenaltyPair final : public SurfacePair {
   }
 
  private:
+  /// The share of the depth (m) of a point that pushes. What the depth loses in a jump is dissipated.
+  static double share_of_depth(double depth, double stiffness, Row<double>* remembered,
+                               ContactMemory& memory) {
+    const bool touched = remembered[0][strength] > 0.0;
+    const double before = touched ? remembered[0][last_depth] : 0.0, step = memory.others[0][last_way];
+    double& idle = remembered[1][0];
+    if (!touched) idle = 0.0;
+    const double stretched = before - idle, kept = std::max(depth + step - idle, 0.0);
+    if (stretched > kept) memory.sums[0] += 0.5 * stiffness * (stretched * stretched - kept * kept);
+    idle = std::min(idle + std::max(depth - before - step, 0.0), depth);
+    return depth > 0.0 ? 1.0 - idle / depth : 0.0;
+  }
+
   /// The weights of the point of the face to which the spring of a point pulls.
   Row<double> hold(const Vector& x, const SurfaceFoot& foot, double stiffness, Row<double>* remembered,
                    const Row<double>* onto, ContactMemory& memory, const MovingSurface& surface) const {
-    Row<double>&anchor = remembered[1], &stretch = remembered[2];
+    Row<double>&anchor = remembered[2], &stretch = remembered[3];
     Vector along{};
     if (remembered[0][strength] > 0.0) {
       const Quadrilateral& corners = surface.corners(static_cast<int>(remembered[0][touched_face]));
       along = difference(foot.x, MovingSurface::position(corners, anchor, onto));
       const Vector inwards = difference(foot.x, x);
       along = sum(along, -dot(along, inwards) / dot(inwards, inwards), inwards);
+      // Where the closest point jumps, the point does not slip that far.
+      const Vector before{stretch[0], stretch[1], stretch[2]}, change = difference(along, before);
+      const double way = length(change), most = memory.others[0][last_way];
+      if (way > most) along = sum(before, most / way, change);
     } else {
       stretch = {};
     }

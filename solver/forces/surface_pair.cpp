@@ -39,12 +39,6 @@ SurfacePair::SurfacePair(const Contact& contact, SurfacesOfPair given, const Nod
   }
 }
 
-Touch SurfacePair::touch(const Row<double>* memory) const {
-  Touch touch = touch_of(contact_.label, memory);
-  touch.passed = static_cast<int>(memory[ContactMemory::own][passed_node]) - 1;
-  return touch;
-}
-
 int SurfacePair::node_of(const MovingSurface& surface, const SurfacePoint& point) {
   const auto& weights = point.weights.x;
   const auto I = static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());

@@ -31,7 +31,7 @@ class SurfacePair : public ContactForce {
   std::optional<Deepest> deepest_at_start() const;
 
   std::size_t memory() const final { return memory_; }
-  Touch touch(const Row<double>* memory) const final;
+  Touch touch(const Row<double>* memory) const final { return touch_of(contact_.label, memory); }
   double half_thickness() const final { return given_.reach; }
   double travel() const final { return 0.0; }
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final;
@@ -43,9 +43,9 @@ class SurfacePair : public ContactForce {
                              AtNodes<Row<float>> /*roots*/) const final {}
 
  protected:
-  /// What a pair remembers in its first row: the sum of the largest ways of nodes, m; one more than the
-  /// number of a node that passed through; whether it has taken a step.
-  enum OfPair : std::size_t { way_so_far = 0, passed_node = 1, has_moved = 2 };
+  /// What a pair remembers in its first row: the sum of the largest relative motions of nodes, m; the last of
+  /// them, infinite at first; whether it has taken a step.
+  enum OfPair : std::size_t { way_so_far = 0, last_way = 1, has_moved = 2 };
 
   /// What points remember in their first row: until which way they touch nothing, m; the face that they
   /// touch; their strength, zero if they do not touch; their depth then, m.
@@ -97,10 +97,14 @@ void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, 
                                  const LetGo& let_go) const {
   Row<double>& of_pair = memory.others[0];
   double& way = of_pair[way_so_far];
-  double most = 0.0;
+  const bool is_first = way == 0.0;
+  Motions motions;
   for (std::size_t s = 0; s < surfaces_.size(); ++s)
-    most = std::max(most, surfaces_[s].move(u, of_surface(memory, s)));
-  way += most;
+    surfaces_[s].move(u, is_first, of_surface(memory, s), motions);
+  of_pair[last_way] = is_first ? INFINITY : motions.largest_relative();
+  way += is_first ? given_.reach : of_pair[last_way];
+  // Within one step, points of fast bodies may pass deeper than the reach.
+  const double range = std::max(given_.reach, motions.largest_relative());
   bool fits = false;
   for (const Side& side : sides_) {
     const MovingSurface &from = surfaces_[side.from], &onto = surfaces_[side.onto];
@@ -114,17 +118,17 @@ void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, 
       }
       const SurfacePoint& point = from.points()[k];
       const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
-      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), given_.reach,
+      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), range,
                                             side.neighbours[k], of_onto);
-      // Both surfaces may move by half the distance before they touch.
-      one[clear_until] = foot.behind ? way : way + 0.5 * foot.distance();
-      if (foot.behind) {
+      one[clear_until] = foot.behind ? way : way + foot.distance();
+      const bool is_deeper = foot.behind && foot.distance() > given_.reach;
+      if (is_deeper) memory.note_passed(node_of(from, point));
+      if (foot.behind && !is_deeper) {
         use(side, k, x, foot);
         one[touched_face] = foot.face;
         one[last_depth] = foot.distance();
       } else if (one[strength] > 0.0) {
-        constexpr double deep = 0.8;  // of the reach: no step leads from there to the outside
-        if (one[last_depth] > deep * given_.reach) of_pair[passed_node] = 1 + node_of(from, point);
+        if (one[last_depth] > deep * given_.reach) memory.note_passed(node_of(from, point));
         let_go(&one);
         one[strength] = 0.0;
       }

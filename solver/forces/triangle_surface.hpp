@@ -23,6 +23,9 @@ class TriangleSurface {
   /// Half the shortest edge of the box around it, m.
   double half_thickness() const;
 
+  /// A point of the surface, m.
+  const Vector& first_point() const { return points_.front(); }
+
   /// See ObstacleShape. Allocates nothing.
   Gap at(const Vector& x) const;
 
@@ -54,6 +57,7 @@ struct SurfaceShape {
   std::shared_ptr<const TriangleSurface> surface;
   Vector origin;
 
+  Vector point() const { return sum(origin, 1.0, surface->first_point()); }
   double half_thickness() const { return surface->half_thickness(); }
   Gap at(const Vector& x) const { return surface->at(difference(x, origin)); }
 };

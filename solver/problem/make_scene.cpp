@@ -153,6 +153,15 @@ std::vector<bool> tied_nodes(const Scene& scene) {
   return tied;
 }
 
+/// Whether all components of each node are held or driven.
+std::vector<bool> held_nodes(const Scene& scene) {
+  std::vector<int> imposed(scene.mesh.points.size(), 0);
+  for (const Constraint& one : scene.constraints) ++imposed[at(one.node)];
+  std::vector<bool> held;
+  for (const int components : imposed) held.push_back(components == 3);
+  return held;
+}
+
 /// Resolves the forces of the case, keeps their curves in the scene, and adds to the `masses` (kg) of nodes
 /// what is attached to them.
 void make_forces(const Case& description, Scene& scene, std::vector<double>& masses) {
@@ -163,7 +172,8 @@ void make_forces(const Case& description, Scene& scene, std::vector<double>& mas
                          .masses = masses,
                          .cells = scene.mesh.cells,
                          .young_moduli = young_moduli(scene.mesh, scene.materials),
-                         .tied = tied_nodes(scene)};
+                         .tied = tied_nodes(scene),
+                         .held = held_nodes(scene)};
   description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
   scene.forces = description.quasi_static ? at_rest(resolver.all()) : resolver.all();
   scene.curves = std::move(resolver.curves);

@@ -77,8 +77,9 @@ void require_not_passed(const Touch& touch, const NodalField& points, long step)
   const Vector& X = points[at(touch.passed)];
   throw ComputationError(fmt::format(
       "step {}: contact '{}': node {}, undeformed at ({:.6g}, {:.6g}, {:.6g}) m, went deeper than "
-      "the shortest edge of an element, and may have passed through\n"
-      "remedy: a larger penalty, or less or slower pressing",
+      "the contact can push back from, and may have passed through\n"
+      "remedy: press less or more slowly, take smaller steps (step_fraction), and by method = 'penalty' a "
+      "larger penalty",
       step, touch.name, touch.passed, X[0], X[1], X[2]));
 }
 

@@ -1,0 +1,182 @@
+/// Bodies that slide on each other, meet at edges and collide at random: no energy is gained, momentum is
+/// kept, and nothing passes through without an error.
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "forces/contact_input.hpp"
+#include "solve/central_difference.hpp"
+#include "support/momentum.hpp"
+#include "support/random_scene.hpp"
+#include "support/two_bodies.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+/// The largest energy (J) beyond what there was at the start and loads worked, and the largest energy.
+struct Gain {
+  double gained = 0.0, largest = 0.0;
+
+  explicit Gain(const std::vector<HistoryRow>& rows) {
+    const double start = total_energy(rows.front());
+    for (const HistoryRow& row : rows) {
+      // What a contact dissipates is never negative: it would hide a gain.
+      const double losses = std::max(row.friction, 0.0) - row.friction;
+      gained = std::max(gained, total_energy(row) + losses - row.external_work - start);
+      largest = std::max(largest, total_energy(row));
+    }
+  }
+};
+
+/// A ball of hexahedra: a cube whose shells are blown up.
+Mesh ball(double radius, int n) {
+  return lattice({n, n, n}, [&](const Vector& s) {
+    Vector x{2.0 * s[0] - 1.0, 2.0 * s[1] - 1.0, 2.0 * s[2] - 1.0};
+    const double shell = std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
+    if (shell == 0.0) return Vector{};
+    const double sphere = radius * shell / length(x), cube = 0.6 * radius;
+    const double round = shell * shell;
+    for (double& one : x) one *= round * sphere + (1.0 - round) * cube;
+    return x;
+  });
+}
+
+/// A box on a softer, larger one, with meshes that match: points lie on faces to rounding, which has no
+/// direction; taken for one, the motion was no longer finite after ten steps. The box rests off the centre
+/// and slides away as the lower box yields; its energy is what its weight works, less what vibrations lose.
+TEST(SurfacePair, lets_a_box_slide_on_a_box) {
+  for (const auto method : both_methods) {
+    for (const double fraction : {0.5, 0.9}) {
+      TwoBodies bodies(box({1.0, 1.0, 0.5}, {4, 4, 2}),
+                       moved(box({0.6, 0.6, 0.3}, {3, 3, 2}), {0.17, 0.23, 0.5}),
+                       NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
+      Case& d = bodies.description;
+      d.displacements = {{"foot", {}}};
+      d.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
+      d.forces.of<Contact>() = {pair_of("upper", "lower", method)};
+      d.dynamics.duration = 2.0;
+      d.dynamics.step_fraction = fraction;
+      d.dynamics.check_interval = 10;
+      const Scene scene = bodies.scene();
+      Recorder recorder;
+      integrate(Model(scene, {"tl-perturbation"}), recorder);
+      const Gain gain(recorder.rows);
+      EXPECT_LT(gain.gained, 0.01 * gain.largest) << fraction;
+      EXPECT_LE(std::abs(recorder.rows.back().friction), 0.1 * gain.largest) << fraction;
+    }
+  }
+}
+
+/// A ball slides in a bowl and on a dome, of coarse faces: where faces turn, impulses along the directions at
+/// the ends of steps work on what slides. Kinematic contact never gains energy; the penalty to the error of
+/// its steps, a percent.
+TEST(SurfacePair, gains_no_energy_on_curved_surfaces) {
+  for (const auto method : both_methods) {
+    for (const double curvature : {1.0, -1.0}) {
+      Mesh bowl = lattice({10, 10, 2}, [&](const Vector& s) {
+        const double x = 2.0 * s[0] - 1.0, y = 2.0 * s[1] - 1.0;
+        return Vector{x, y, s[2] * (0.4 + curvature * 0.25 * (x * x + y * y - 1.0))};
+      });
+      const bool in_bowl = curvature > 0.0;
+      TwoBodies bodies(std::move(bowl),
+                       moved(ball(0.25, 4), {in_bowl ? 0.5 : 0.02, 0.0, in_bowl ? 0.55 : 0.92}),
+                       NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
+      Case& d = bodies.description;
+      d.displacements = {{"foot", {}}};
+      d.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
+      d.forces.of<Contact>() = {pair_of("upper", "lower", method)};
+      d.dynamics.duration = 2.0;
+      d.dynamics.check_interval = 10;
+      const Scene scene = bodies.scene();
+      Recorder recorder;
+      integrate(Model(scene, {"tl-perturbation"}), recorder);
+      const Gain gain(recorder.rows);
+      const double limit = method == Contact::Method::kinematic ? 1e-9 : 0.01;
+      EXPECT_LT(gain.gained, limit * gain.largest) << curvature;
+    }
+  }
+}
+
+/// Two free bodies, boxes or balls, collide.
+TwoBodies random_collision(RandomGeometry& random) {
+  const auto size = [&] { return random.uniform(0.3, 1.0); };
+  const auto count = [&] { return static_cast<int>(random.uniform(2.0, 4.999)); };
+  const auto body = [&]() -> Mesh {
+    if (random.uniform(0.0, 1.0) > 0.5) return ball(0.5 * size(), std::min(2 * count(), 6));
+    const std::array<double, 3> sizes{size(), size(), size()};
+    return moved(box(sizes, {count(), count(), count()}),
+                 {-0.5 * sizes[0], -0.5 * sizes[1], -0.5 * sizes[2]});
+  };
+  Mesh lower = body(), upper = body();
+  const double up = bounding_box(lower.points)[1][2] - bounding_box(upper.points)[0][2];
+  upper = moved(std::move(upper),
+                {random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), up + random.uniform(0.0, 0.1)});
+  const double E = 1e4, speed = std::sqrt(E / 1000.0) * random.uniform(0.01, 0.3);
+  TwoBodies bodies(std::move(lower), std::move(upper),
+                   NeoHookean{.young_modulus = E, .poisson_ratio = random.uniform(0.0, 0.49)});
+  const auto method = both_methods[random.uniform(0.0, 1.0) > 0.5 ? 1 : 0];
+  Contact contact = pair_of("lower", "upper", method, std::max(random.uniform(-0.8, 0.8), 0.0));
+  if (method == Contact::Method::penalty)
+    contact.penalty = std::array{1.0, 5.0, 30.0}[at(static_cast<int>(random.uniform(0.0, 2.999)))];
+  Case& d = bodies.description;
+  d.forces.of<Contact>() = {contact};
+  const auto turn = [&] { return random.uniform(-1.0, 1.0) * speed; };
+  d.velocities = {
+      {.set = "upper", .value = {0.5 * turn(), 0.5 * turn(), -speed}, .spin = {turn(), turn(), turn()}}};
+  d.dynamics.duration = 1.0 / speed;
+  d.dynamics.check_interval = 10;
+  d.dynamics.frames = 20;
+  return bodies;
+}
+
+/// The boundary faces of some nodes.
+std::vector<Quadrilateral> skin_of(const Scene& scene, const std::vector<int>& nodes) {
+  std::vector<Quadrilateral> faces;
+  for (const Quadrilateral& face : scene.boundary) {
+    if (std::ranges::find(nodes, face[0]) != nodes.end()) faces.push_back(face);
+  }
+  return faces;
+}
+
+/// At speeds up to .3 of waves, by both methods, with friction and without: none gains energy beyond 1.2 %:
+/// of all, one gains 1.03 % (kinematic, as sweeps end before all points are separate); before, 1.5 % by the
+/// kinematic method and 4.2 % by the penalty, where the closest point jumps at an edge. Momentum and its
+/// moment are kept to rounding. No body has its centre in the other.
+TEST(SurfacePair, collides_at_random) {
+  const long scenes = from_environment("SANDGLASS_SCENES", 200);
+  RandomGeometry random(48);
+  for (long number = 0; number < scenes; ++number) {
+    const TwoBodies bodies = random_collision(random);
+    const Contact& contact = bodies.description.forces.of<Contact>().front();
+    const std::string what = fmt::format("scene {}: {}, penalty {}, friction {:.2f}", number,
+                                         words_of(contact.method)[static_cast<std::size_t>(contact.method)],
+                                         contact.penalty, contact.friction);
+    Recorder recorder;
+    const Scene scene = bodies.scene();
+    const Model model(scene, {"tl-perturbation"});
+    try {
+      integrate(model, recorder);
+    } catch (const ComputationError& error) {  // it is not silent
+      EXPECT_NE(std::string(error.what()).find("contact 'pair'"), std::string::npos) << what << error.what();
+      continue;
+    }
+    EXPECT_LT(Gain(recorder.rows).gained, 0.012 * total_energy(recorder.rows.front())) << what;
+    const auto &first = recorder.frames.front(), &last = recorder.frames.back();
+    const Momentum before(model, first.u, first.v), after(model, last.u, last.v);
+    EXPECT_LT(distance(before.linear, after.linear), 1e-12 * length(before.linear)) << what;
+    EXPECT_LT(distance(before.angular, after.angular), 1e-11 * length(before.linear)) << what;
+    for (const Frame& frame : recorder.frames) {
+      NodalField x = scene.mesh.points;
+      for (std::size_t n = 0; n < x.size(); ++n) x[n] = sum(x[n], 1.0, frame.u[n]);
+      for (const auto& [one, other] : {std::pair{"lower", "upper"}, {"upper", "lower"}}) {
+        const auto& nodes = scene.sets.at(one);
+        Vector centre{};
+        for (const int n : nodes) centre = sum(centre, 1.0 / static_cast<double>(nodes.size()), x[at(n)]);
+        EXPECT_LT(winding_number(centre, skin_of(scene, scene.sets.at(other)), x), 0.5) << what;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sandglass::verification
