@@ -157,6 +157,7 @@ TEST_F(MethodTableTest, keeps_every_set_that_a_table_names_on_coarser_meshes) {
     Case original = read("[element_sets]\nlower = { z = [0.0, 0.1] }\n" + table);
     original.sets.push_back({.name = "lone", .surface = true});
     original.sets.back().within[2] = Interval{0.0, 0.0};
+    if (name == Obstacle::name) original.displacements.clear();  // held nodes feel none
     const auto coarser = coarser_meshes(std::get<AnyGenerator>(original.mesh));
     ASSERT_FALSE(coarser.empty());
     for (const auto& mesh : coarser) {

@@ -66,7 +66,7 @@ struct Touched {
     obstacle.resolve(resolver);
     force = resolver.all().back();
     contact = contacts_of({force}).front();
-    factors.assign(resolver.curves.size(), 1.0);
+    for (const LoadCurve& curve : resolver.curves) factors.push_back(curve.at(0.0, 1.0));
   }
 
   NodalRows at_nodes(const Rows<double>& rows) const { return {rows.data(), places}; }

@@ -242,6 +242,54 @@ TEST(Simulation, settles_where_a_static_run_ends) {
   expect_settled<double>("tl-perturbation", loaded, 0.5);
 }
 
+/// A ball above the head of the block; more keys may follow.
+std::string ball(const std::string& method) {
+  return "[[obstacle]]\nname = \"ball\"\nset = \"head\"\nshape = \"sphere\"\nradius = 0.05\n"
+         "point = [0.05, 0.04, 0.25]\nmethod = \"" +
+         method + "\"\n";
+}
+
+/// Friction and inertia make the force depend on the path; both are the same to rounding, which contact
+/// amplifies.
+TEST(Simulation, moves_obstacles_as_their_paths_in_the_case_do) {
+  for (const char* method : {"penalty", "kinematic"}) {
+    Simulation<double> by_program(block(), text_of(ball(method) + "friction = 0.3\n"));
+    Simulation<double> by_case(
+        block(),
+        text_of(
+            ball(method) +
+            "friction = 0.3\ndisplacement = [0.01, 0.0, -0.02]\ntimes = [0.0, 0.1]\nfactors = [0.0, 1.0]\n"));
+    by_program.move("ball", {0.01, 0.0, -0.02});
+    TemporaryFolder folder;
+    by_program.save(folder / "before");
+    for (int again = 0; again < 2; ++again) {
+      by_program.advance(0.1);
+      if (again == 0) by_case.advance(0.1);
+      EXPECT_GT(length(by_case.reaction("ball")), 0.01);
+      EXPECT_LT(distance(by_program.reaction("ball"), by_case.reaction("ball")), 1e-9) << method;
+      EXPECT_LT(largest_distance(field_of(by_program), field_of(by_case)), 1e-12) << method;
+      by_program.resume(folder / "before");
+    }
+  }
+}
+
+TEST(Simulation, settles_under_an_obstacle_that_it_moved) {
+  Simulation<double> by_program(block(), text_of(ball("penalty")));
+  Simulation<double> by_case(block(), text_of(ball("penalty") + "displacement = [0.0, 0.0, -0.02]\n"));
+  for (Simulation<double>* one : {&by_program, &by_case}) {
+    if (one == &by_program)
+      one->move("ball", {0.0, 0.0, -0.02});
+    else
+      one->impose(1.0);
+    one->settle();
+  }
+  EXPECT_GT(length(by_case.reaction("ball")), 0.01);
+  EXPECT_LT(distance(by_program.reaction("ball"), by_case.reaction("ball")), 1e-9);
+  EXPECT_LT(largest_distance(field_of(by_program), field_of(by_case)), 1e-12);
+  for (Simulation<double>* one : {&by_program, &by_case}) one->advance(0.05);  // the ball stays where it is
+  EXPECT_LT(largest_distance(field_of(by_program), field_of(by_case)), 1e-12);
+}
+
 /// Nothing moves in equilibrium: forces balance to the search's tolerance, 1e-8 of the reactions. Without the
 /// levels of an adaptive answer, or with the previous velocities, the body would move.
 TEST(Simulation, rests_after_settling) {
@@ -406,6 +454,10 @@ TEST(Simulation, refuses_what_makes_no_sense) {
   for (const double seconds : {0.0, -1.0, std::nan("")}) {
     says("seconds", input_error([&] { simulation.advance(seconds); }));
   }
+  Simulation<double> touched(block(), text_of(ball("penalty")));
+  says("obstacle 'ball': 2 displacements",
+       input_error([&] { touched.move("ball", std::vector<Vector>(2)); }));
+  says("did you mean 'ball'", input_error([&] { touched.move("bal", up); }));
   const auto made = [](const SimulationSettings& settings) {
     return input_error([&] { Simulation<double>(block(), text_of(pulled), settings); });
   };

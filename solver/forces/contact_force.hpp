@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "base/error.hpp"
 #include "forces/body_force.hpp"
@@ -73,6 +74,12 @@ inline double slip(Vector& along, double most, const Row<double>& before) {
   return dissipated;
 }
 
+/// An obstacle that a program may move, and the first of the three curves that are its displacement (m).
+struct Movable {
+  std::string_view name;
+  std::size_t first_curve;
+};
+
 /// Nodes that an obstacle may move back onto itself within a step.
 struct NodalPush {
   AtNodes<Row<double>> u, increment;          ///< m
@@ -104,6 +111,9 @@ class ContactForce : public BodyForce {
 
   /// How far it moves at the factor one, m.
   virtual double travel() const = 0;
+
+  /// How a program may move it; none: not at all.
+  virtual std::optional<Movable> movable() const { return std::nullopt; }
 
   /// How the body touches it, from these rows.
   virtual Touch touch(const Row<double>* memory) const = 0;
@@ -181,6 +191,15 @@ inline std::vector<const ContactForce*> contacts_of(const BodyForces& forces) {
     if (const auto* contact = dynamic_cast<const ContactForce*>(force.get())) contacts.push_back(contact);
   }
   return contacts;
+}
+
+/// The obstacles among them that a program may move.
+inline std::vector<Movable> movable_of(const BodyForces& forces) {
+  std::vector<Movable> all;
+  for (const ContactForce* contact : contacts_of(forces)) {
+    if (const auto movable = contact->movable()) all.push_back(*movable);
+  }
+  return all;
 }
 
 /// The forces on a body in static equilibrium.

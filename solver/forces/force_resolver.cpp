@@ -34,6 +34,11 @@ std::size_t ForceResolver::number_of(const LoadCurve& curve) {
   return number;
 }
 
+std::size_t ForceResolver::add_moves() {
+  curves.insert(curves.end(), 3, LoadCurve{.share = 0.0});
+  return curves.size() - 3;
+}
+
 void ForceResolver::add_dead(std::size_t curve, int node, const Vector& force, double factor) {
   Vector& sum = dead[{curve, node}];
   for (std::size_t i = 0; i < 3; ++i) sum[i] += factor * force[i];

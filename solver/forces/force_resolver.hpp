@@ -39,6 +39,10 @@ struct ForceResolver {
   /// The number of a curve, which is added if it is new.
   std::size_t number_of(const LoadCurve& curve);
 
+  /// Adds three curves for the displacement (m) by which a program moves an obstacle, zero until it does.
+  /// Returns the number of the first.
+  std::size_t add_moves();
+
   /// Adds a dead load (N), `factor` times a force. A load that changes with the positions or masses of nodes
   /// also adds to `slopes_of_dead`.
   void add_dead(std::size_t curve, int node, const Vector& force, double factor);

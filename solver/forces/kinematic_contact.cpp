@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view in_steps = "it moves nodes within time steps";
 
 /// A row for the position (m) of the obstacle at the end of the last step, one for its motion in it, and for
-/// each node one for its motion in it relative to the obstacle.
+/// each node one for its motion in it relative to the obstacle and one for the normal at its end.
 class KinematicContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
@@ -26,14 +26,17 @@ class KinematicContact final : public ObstacleContact {
     memory.pushes = {};
     for_each_gap(moved, nodes.u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const int node = nodes_[k].node;
-      Row<double>&last = memory.others[own + k], &increment = nodes.increment[node];
+      Row<double>&last = memory.others[own + 2 * k], &last_normal = memory.others[own + 2 * k + 1];
+      Row<double>& increment = nodes.increment[node];
       Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
-      if (position[3] == 0.0)  // the force of the first step acts for half of it
-        last = {{0.5 * motion[0], 0.5 * motion[1], 0.5 * motion[2], 0.0}};
+      if (position[3] == 0.0) {
+        last = {{0.5 * motion[0], 0.5 * motion[1], 0.5 * motion[2], 0.0}};  // its force acts for half a step
+        last_normal = row_of(gap_at(difference(x, motion)).normal);
+      }
       if (gap.distance < -deep * half_thickness() || leaps(gap, x, motion)) memory.note_passed(node);
       if (gap.distance < 0.0) {
         const Row<double>& w = nodes.inverse_masses[node];
-        const Vector change = correction(gap, direction(gap, difference(x, motion)), motion, w);
+        const Vector change = correction(gap, direction(gap, last_normal), motion, w);
         motion = sum(motion, 1.0, change);
         for (std::size_t i = 0; i < 3; ++i) {
           if (!(w[i] > 0.0)) continue;
@@ -45,10 +48,11 @@ class KinematicContact final : public ObstacleContact {
           memory.sums[1] += 0.5 * force * (last_of_obstacle[i] + of_obstacle[i]);
         }
       }
-      last = {{motion[0], motion[1], motion[2], 0.0}};
+      last = row_of(motion);
+      last_normal = row_of(gap.normal);
     });
     position = {{moved[0], moved[1], moved[2], 1.0}};
-    last_of_obstacle = {{of_obstacle[0], of_obstacle[1], of_obstacle[2], 0.0}};
+    last_of_obstacle = row_of(of_obstacle);
   }
 
   bool moves_nodes() const override { return true; }
@@ -60,10 +64,10 @@ class KinematicContact final : public ObstacleContact {
                  std::vector<LoadRates>& /*rates*/) const override {}
   void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
                              AtNodes<Row<float>> /*roots*/) const override {}
-  std::size_t memory() const override { return ContactMemory::own + own + nodes_.size(); }
+  std::size_t memory() const override { return ContactMemory::own + own + 2 * nodes_.size(); }
 
   std::shared_ptr<const BodyForce> at_rest() const override {
-    return make_penalty_contact(nodes_, obstacle_, shape_, curve_, start_);
+    return make_penalty_contact(nodes_, obstacle_, shape_, curves_, start_);
   }
 
   void begin_again(const Vector& force, Row<double>* rows) const override {
@@ -74,8 +78,10 @@ class KinematicContact final : public ObstacleContact {
  private:
   static constexpr std::size_t own = 2;
 
+  static Row<double> row_of(const Vector& v) { return {{v[0], v[1], v[2], 0.0}}; }
+
   std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
-    return make_kinematic_contact(std::move(nodes), obstacle_, shape_, curve_, start_);
+    return make_kinematic_contact(std::move(nodes), obstacle_, shape_, curves_, start_);
   }
 
   /// Whether a node that moves by more than half the thickness in a step passes through the obstacle.
@@ -91,9 +97,9 @@ class KinematicContact final : public ObstacleContact {
   /// The direction of the force on a node: the normal where the step starts, as forces act there. Over the
   /// steps before and after it, a node that slides along a curve moves at right angles to it: the normal at
   /// the end would push it on with every step. Across an edge of the obstacle only the latter is of use.
-  Vector direction(const Gap& end, const Vector& start) const {
+  static Vector direction(const Gap& end, const Row<double>& start) {
     constexpr double least_cosine = 0.5;
-    const Vector normal = gap_at(start).normal;
+    const Vector normal{start[0], start[1], start[2]};
     return dot(normal, end.normal) < least_cosine ? end.normal : normal;
   }
 
@@ -121,8 +127,8 @@ class KinematicContact final : public ObstacleContact {
 
 std::shared_ptr<ObstacleContact> make_kinematic_contact(std::vector<TouchingNode> nodes,
                                                         const Obstacle& obstacle, const ObstacleShape& shape,
-                                                        std::size_t curve, const Vector& start) {
-  return std::make_shared<KinematicContact>(std::move(nodes), obstacle, shape, curve, start,
+                                                        const ObstacleCurves& curves, const Vector& start) {
+  return std::make_shared<KinematicContact>(std::move(nodes), obstacle, shape, curves, start,
                                             ForceTraits{Obstacle::name, false, true, in_steps});
 }
 

@@ -13,17 +13,23 @@ struct TouchingNode {
   double stiffness;  ///< of a penalty, N/m
 };
 
+/// The curves of the displacement of an obstacle.
+struct ObstacleCurves {
+  std::size_t path;        ///< in the case
+  std::size_t first_move;  ///< of three, by a program, m
+};
+
 /// An obstacle where it is, and the nodes that may touch it: what all methods share. They keep three rows,
 /// and others for each node.
 class ObstacleContact : public ContactForce {
  public:
   ObstacleContact(std::vector<TouchingNode> nodes, const Obstacle& obstacle, ObstacleShape shape,
-                  std::size_t curve, const Vector& start, const ForceTraits& traits)
+                  const ObstacleCurves& curves, const Vector& start, const ForceTraits& traits)
       : ContactForce(numbers_of(nodes), traits),
         nodes_(std::move(nodes)),
         obstacle_(obstacle),
         shape_(std::move(shape)),
-        curve_(curve),
+        curves_(curves),
         start_(start),
         rounding_(1e-6 * extent_of(nodes_)) {}
 
@@ -47,6 +53,7 @@ class ObstacleContact : public ContactForce {
     return std::visit([](const auto& shape) { return shape.half_thickness(); }, shape_);
   }
   double travel() const final { return length(obstacle_.displacement); }
+  std::optional<Movable> movable() const final { return Movable{obstacle_.label, curves_.first_move}; }
 
   Touch touch(const Row<double>* memory) const final { return touch_of(obstacle_.label, memory); }
 
@@ -63,7 +70,10 @@ class ObstacleContact : public ContactForce {
   /// The same contact of other nodes.
   virtual std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const = 0;
 
-  Vector displacement(Factors factors) const { return sum({}, factors[curve_], obstacle_.displacement); }
+  Vector displacement(Factors factors) const {
+    const Factors moves = factors.subspan(curves_.first_move, 3);
+    return sum({moves[0], moves[1], moves[2]}, factors[curves_.path], obstacle_.displacement);
+  }
 
   /// Calls use(k, x, gap) for all nodes, with the position x (m) in the frame of the obstacle.
   template <class Rows, class Use>
@@ -88,7 +98,7 @@ class ObstacleContact : public ContactForce {
   const std::vector<TouchingNode> nodes_;
   const Obstacle obstacle_;
   const ObstacleShape shape_;
-  const std::size_t curve_;
+  const ObstacleCurves curves_;
   const Vector start_;     // its displacement at the start, m
   const double rounding_;  // of coordinates in files, m
 
@@ -117,13 +127,13 @@ class ObstacleContact : public ContactForce {
 /// d. A node that sticks thus stays.
 std::shared_ptr<ObstacleContact> make_penalty_contact(std::vector<TouchingNode> nodes,
                                                       const Obstacle& obstacle, const ObstacleShape& shape,
-                                                      std::size_t curve, const Vector& start);
+                                                      const ObstacleCurves& curves, const Vector& start);
 
 /// By moving nodes. The velocity that a node would have inside the obstacle is corrected so that it ends the
 /// step on the surface; it is never held there. Friction takes from its motion along the surface at most the
 /// coefficient of friction times this correction, and no more than there is.
 std::shared_ptr<ObstacleContact> make_kinematic_contact(std::vector<TouchingNode> nodes,
                                                         const Obstacle& obstacle, const ObstacleShape& shape,
-                                                        std::size_t curve, const Vector& start);
+                                                        const ObstacleCurves& curves, const Vector& start);
 
 }  // namespace sandglass

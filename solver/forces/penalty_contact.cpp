@@ -149,7 +149,7 @@ class PenaltyContact final : public ObstacleContact {
   static bool is_fixed(const Row<double>* memory) { return memory[2][3] != 0.0; }
 
   std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
-    return make_penalty_contact(std::move(nodes), obstacle_, shape_, curve_, start_);
+    return make_penalty_contact(std::move(nodes), obstacle_, shape_, curves_, start_);
   }
 
   /// The extension (m) along the surface of the spring that holds a node.
@@ -184,10 +184,10 @@ class PenaltyContact final : public ObstacleContact {
 
 std::shared_ptr<ObstacleContact> make_penalty_contact(std::vector<TouchingNode> nodes,
                                                       const Obstacle& obstacle, const ObstacleShape& shape,
-                                                      std::size_t curve, const Vector& start) {
+                                                      const ObstacleCurves& curves, const Vector& start) {
   const bool rubs = obstacle.friction > 0.0;
   return std::make_shared<PenaltyContact>(
-      std::move(nodes), obstacle, shape, curve, start,
+      std::move(nodes), obstacle, shape, curves, start,
       ForceTraits{Obstacle::name, false, rubs, rubs ? path_of_friction : ""});
 }
 

@@ -100,11 +100,12 @@ Scene with_load(Scene scene, const std::vector<double>& imposed, double time, do
   scene.case_hash.clear();
   scene.angles = {0.0};
   scene.turned.clear();
-  for (std::size_t k = 0; k < imposed.size(); ++k) {
-    const auto& [node, component, path, group] = scene.constraints[k];
-    scene.constraints[k] = {node, component, {{imposed[k]}}};
-  }
+  auto next = imposed.begin();
+  for (Constraint& one : scene.constraints) one = {one.node, one.component, {{*next++}}};
   for (LoadCurve& curve : scene.curves) curve = {.share = curve.at(time, load_factor)};
+  for (const Movable& obstacle : movable_of(scene.forces)) {
+    for (std::size_t i = 0; i < 3; ++i) scene.curves[obstacle.first_curve + i].share = *next++;
+  }
   scene.forces = at_rest(std::move(scene.forces));
   return scene;
 }

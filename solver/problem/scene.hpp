@@ -65,7 +65,8 @@ struct Scene {
 Scene on_part(const Scene& whole, const MeshPart& part);
 
 /// The scene at rest whose full load is the load of another at a time (s) and load factor, but with the given
-/// imposed displacements: a value (m) for each constraint.
+/// imposed displacements, values (m) for each constraint, followed by three for each obstacle that a program
+/// may move.
 Scene with_load(Scene scene, const std::vector<double>& imposed, double time, double load_factor);
 
 /// The scene with imposed displacements, angles, forces and initial velocities multiplied by a factor.

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "forces/contact_force.hpp"
 #include "io/case_file.hpp"
 #include "solve/leapfrog.hpp"
 
@@ -14,12 +15,17 @@ namespace sandglass {
 
 namespace {
 
+/// Obstacles are sets of one node.
 std::map<std::string, std::vector<Driven>> driven_sets(const Scene& scene) {
   std::map<std::string, std::vector<Driven>> driven;
   for (const auto& set : scene.sets) {
     for_each_constraint(scene.constraints, set.second, [&](std::size_t k, std::size_t n) {
       driven[set.first].push_back({k, n, at(scene.constraints[k].component)});
     });
+  }
+  std::size_t next = scene.constraints.size();
+  for (const Movable& obstacle : movable_of(scene.forces)) {
+    for (std::size_t i = 0; i < 3; ++i) driven[std::string(obstacle.name)].push_back({next++, 0, i});
   }
   return driven;
 }
@@ -47,13 +53,14 @@ DrivenProblem::DrivenProblem(Scene scene, const SimulationSettings& settings, Pr
     : scene_(std::move(scene)),
       model_(scene_, choice_of(scene_.settings, settings, precision)),
       driven_(driven_sets(scene_)),
+      targets_(scene_.constraints.size() + 3 * movable_of(scene_.forces).size()),
       damping_(settings.damping.value_or(scene_.settings.dynamics.damping)),
       step_fraction_(settings.step_fraction) {
   require_steps(model_);
 }
 
 const std::vector<Driven>& DrivenProblem::driven(const std::string& set) const {
-  return find(driven_, set, "has no driven node: the case imposes no displacement to it");
+  return find(driven_, set, "has no driven node: the case imposes no displacement on it");
 }
 
 const std::vector<int>& DrivenProblem::nodes(const std::string& set) const {
@@ -61,6 +68,9 @@ const std::vector<int>& DrivenProblem::nodes(const std::string& set) const {
 }
 
 void DrivenProblem::require_one_for_each_node(const std::string& set, std::size_t count) const {
+  if (std::ranges::any_of(movable_of(scene_.forces), [&](const Movable& one) { return one.name == set; })) {
+    throw InputError(fmt::format("obstacle '{}': {} displacements; allowed: one", set, count));
+  }
   if (count == nodes(set).size()) return;
   throw InputError(fmt::format("set '{}': {} displacements; it must be one for each of its {} nodes", set,
                                count, nodes(set).size()));

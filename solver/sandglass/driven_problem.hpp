@@ -26,9 +26,9 @@ MeshWithSets checked(MeshArrays arrays);
 /// InputError for more than can be counted.
 double steps_in(double seconds, double step);
 
-/// A driven component of a set.
+/// A driven component of a set, or of an obstacle.
 struct Driven {
-  std::size_t constraint;  ///< index into the constraints of the scene
+  std::size_t constraint;  ///< index into the constraints of the scene; beyond, components of obstacles
   std::size_t node;        ///< index into the nodes of the set
   std::size_t component;
 };
@@ -44,7 +44,10 @@ class DrivenProblem {
   double damping() const { return damping_; }  ///< 1/s
   double step_fraction() const { return step_fraction_; }
 
-  /// The driven components of a set. Throws InputError for a set without any, and lists the driven sets.
+  /// The number of driven components: constraints, then three for each obstacle.
+  std::size_t targets() const { return targets_; }
+
+  /// The driven components of a set or an obstacle. Throws InputError for a set without any, and lists the driven sets.
   const std::vector<Driven>& driven(const std::string& set) const;
 
   /// Throws InputError for an unknown set.
@@ -80,6 +83,7 @@ class DrivenProblem {
   const Scene scene_;
   const Model model_;
   const std::map<std::string, std::vector<Driven>> driven_;
+  const std::size_t targets_;
   double damping_;
   double step_fraction_;
 };

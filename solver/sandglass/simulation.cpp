@@ -26,7 +26,7 @@ class Simulation<Real>::Parts {
         leapfrog_(model(), elements(), problem_->damping()),
         longest_step_(problem_->damping()),
         adaption_(model(), body()),
-        from_(scene().constraints.size(), 0.0),
+        from_(problem_->targets(), 0.0),
         to_(from_),
         imposed_(from_) {
     leapfrog_.subcycle(model());
@@ -232,7 +232,7 @@ class Simulation<Real>::Parts {
   Adaption<Real> adaption_;
   AdaptionSchedule adaption_schedule_ = adaption_.schedule();
   std::vector<double> from_, to_,
-      imposed_;  // m, in the order of the scene's constraints; the last is the present one
+      imposed_;  // m, as driven components are numbered; the last is the present one
   double factor_from_ = 0.0, factor_to_ = 0.0, factor_ = 0.0;
   std::vector<std::byte> whole_;  // the state at the last check
 };

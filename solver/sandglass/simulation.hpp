@@ -74,8 +74,8 @@ class Simulation {
 
   /// Sets the target of a set's driven nodes for the end of the next `advance`: `displacement` (m) for all of
   /// them. Components that are free in the case stay free. Nodes without a new target keep their last one.
-  /// Throws InputError for a set without driven nodes, listing the driven sets, and for numbers that are not
-  /// finite.
+  /// With the name of an [[obstacle]], its target: a displacement in addition to its path in the case. Throws
+  /// InputError for a set without driven nodes, listing the driven sets, and for numbers that are not finite.
   void move(const std::string& set, const std::array<double, 3>& displacement);
 
   /// The same with a displacement (m) for each node of `nodes(set)`; too few are an InputError.

@@ -117,6 +117,7 @@ template <class Real>
 void Body<Real>::impose(std::span<const double> displacements, double factor, double time) {
   load_factor_ = factor;
   loads_.set(time, factor);
+  loads_.move_obstacles(displacements.last(loads_.moves()));
   constraints_.impose(state_, displacements);
   follow();
 }

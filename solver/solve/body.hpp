@@ -63,7 +63,8 @@ class Body {
   void impose(double factor) { impose(factor, factor); }
 
   /// Sets constrained components, in the order of the scene's constraints, to `displacements` (m) and their
-  /// increments to the change; from now on loads follow this factor and `time` (s).
+  /// increments to the change; from now on loads follow this factor and `time` (s). Three more displacements
+  /// follow for each obstacle that a program may move.
   void impose(std::span<const double> displacements, double factor, double time);
 
   /// Updates tied nodes and their increments.

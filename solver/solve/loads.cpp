@@ -13,7 +13,8 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
       ranks_(layout.team.ranks),
       place_of_node_(scene.mesh.points.size(), -1),
       all_dead_(first_not_dead(scene.forces) == nullptr),
-      factors_(factors_at(0.0, 0.0)) {
+      factors_(factors_at(0.0, 0.0)),
+      movable_(movable_of(scene.forces)) {
   for (const auto& force : scene.forces) {
     for (const int node : force->nodes()) place_of_node_[at(node)] = 0;
   }
@@ -47,6 +48,11 @@ std::vector<double> Loads<Real>::factors_at(double time, double load_factor) con
 template <class Real>
 void Loads<Real>::set(double time, double load_factor) {
   for (std::size_t c = 0; c < factors_.size(); ++c) factors_[c] = curves_[c].at(time, load_factor);
+}
+
+template <class Real>
+void Loads<Real>::move_obstacles(std::span<const double> moves) {
+  for (std::size_t k = 0; k < moves.size(); ++k) factors_[movable_[k / 3].first_curve + k % 3] = moves[k];
 }
 
 template <class Real>

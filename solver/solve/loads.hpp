@@ -15,6 +15,12 @@ class Loads {
   /// Sets the factors of all curves, at a time (s, or the share of a quasi-static load) and a load factor.
   void set(double time, double load_factor);
 
+  /// The number of displacements by which a program may move obstacles: three for each.
+  std::size_t moves() const { return 3 * movable_.size(); }
+
+  /// Sets these displacements, m; `set` makes them zero.
+  void move_obstacles(std::span<const double> moves);
+
   /// Evaluates the loads of a state and subtracts them from its forces (N).
   void subtract(const State<Real>& state, Rows<Real>& force);
 
@@ -116,9 +122,10 @@ class Loads {
   std::vector<std::size_t> rows_;       // that carry loads
   std::vector<bool> owned_;             // by this rank, of these
   std::shared_ptr<const Ranks> ranks_;
-  std::vector<int> place_of_node_;       // among the loaded rows; -1 for others
-  bool all_dead_;                        // no force depends on the motion of the body
-  std::vector<double> factors_;          // of curves
+  std::vector<int> place_of_node_;  // among the loaded rows; -1 for others
+  bool all_dead_;                   // no force depends on the motion of the body
+  std::vector<double> factors_;     // of curves
+  std::vector<Movable> movable_;
   Rows<double> u_, increment_;           // m, of loaded rows; zero where all are dead
   Rows<double> forces_;                  // N, of loaded rows, except those of obstacles
   Rows<double> touching_;                // N, those; empty without any
