@@ -47,7 +47,8 @@ class DrivenProblem {
   /// The number of driven components: constraints, then three for each obstacle.
   std::size_t targets() const { return targets_; }
 
-  /// The driven components of a set or an obstacle. Throws InputError for a set without any, and lists the driven sets.
+  /// The driven components of a set or an obstacle. Throws InputError for a set without any, and lists the
+  /// driven sets.
   const std::vector<Driven>& driven(const std::string& set) const;
 
   /// Throws InputError for an unknown set.
