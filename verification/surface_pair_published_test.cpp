@@ -187,7 +187,7 @@ Simulation<double> wedge(double slope, double friction) {
           "[[displacement]]\nset = \"base\"\n" +
               held + "\"xy\"\n[[displacement]]\nset = \"all\"\n" + held +
               "\"z\"\n[[displacement]]\nset = \"pushed\"\n" + held +
-              "\"x\"\n[[force]]\nset = \"top\"\ntotal = [0.0, -40.0, 0.0]\ntimes = [0.0, 1.0]\n"
+              "\"x\"\n[[force]]\nset = \"top\"\ntotal = [0.0, -40.0, 0.0]\ntimes = [0.0, 2.0]\n"
               "factors = [0.0, 1.0]\n[[contact]]\nname = \"interface\"\nset = \"lower\"\n"
               "other = \"upper\"\nmethod = \"penalty\"\npenalty = 30.0\nfriction = " +
               fmt::format("{}\n[dynamics]\nduration = 1.0\ndamping = 20.0\n", friction)};
@@ -200,9 +200,9 @@ TEST(SurfacePair, pushes_a_wedge_uphill_with_the_published_force) {
   constexpr double slope = 0.1, weight = 40.0;
   for (const double friction : {0.0, 0.1, 0.2, 0.3}) {
     Simulation<double> simulation = wedge(slope, friction);
-    simulation.advance(1.2);
+    simulation.advance(3.0);
     simulation.move("pushed", {0.15, 0.0, 0.0});
-    simulation.advance(1.5);
+    simulation.advance(3.0);
     simulation.move("pushed", {0.1515, 0.0, 0.0});
     simulation.advance(3.0);
     EXPECT_LT(simulation.reaction("pushed")[1], 1e-12);
