@@ -188,6 +188,10 @@ class KinematicPair final : public SurfacePair {
     });
   }
 
+  /// The share of the speed at which a point arrived that it may leave with: with all of it, points under a
+  /// lasting load would oscillate from step to step.
+  static constexpr double returned = 0.5;
+
   /// Changes the impulse of a point so that it is on the face. Returns by how much it moves, m.
   double separate(const Meeting& meeting, const NodalPush& nodes) const {
     const Vector n = meeting.direction(), end = meeting.direction_at_end();
@@ -206,8 +210,9 @@ class KinematicPair final : public SurfacePair {
         });
     if (!(along_n > 0.0)) return 0.0;
     double& impulse = meeting.normal[3];
+    const double arrived = dot(last, n), leaves = arrived < 0.0 ? returned * arrived : arrived;
     const double before = std::exchange(
-        impulse, std::max(0.0, impulse - std::max(dot(apart, end), dot(motion, n) + dot(last, n)) / along_n));
+        impulse, std::max(0.0, impulse - std::max(dot(apart, end), dot(motion, n) + leaves) / along_n));
     Vector change = sum({}, impulse - before, n);
     if (contact_.friction > 0.0) {
       const Vector old{meeting.along[0], meeting.along[1], meeting.along[2]};
