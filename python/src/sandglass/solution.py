@@ -181,7 +181,11 @@ class Solution:
 
             write_vtu(self.to_vtk(), partial)
         else:
-            arrays = {key: value for key, value in self.frame().items() if key not in ("reactions", "moments")}
+            arrays = {
+                key: value
+                for key, value in self.frame().items()
+                if key not in ("reactions", "moments")
+            }
             np.savez_compressed(partial, points=self.points, cells=self.cells, **arrays)
         os.replace(partial, file)
 
