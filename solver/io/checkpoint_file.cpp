@@ -42,8 +42,8 @@ std::vector<HistoryRow> read_history(const Hdf5File& file) {
   }
   for (const auto& [folder, unit, of_frame, of_row] : reaction_groups) {
     for (const auto& set : file.names_in(folder)) {
-      const NodalField values = read_nodal_field(file, folder + set, history.size());
-      for (std::size_t n = 0; n < history.size(); ++n) (history[n].*of_row)[set] = values[n];
+      const NodalField vectors = read_nodal_field(file, folder + set, history.size());
+      for (std::size_t n = 0; n < history.size(); ++n) (history[n].*of_row)[set] = vectors[n];
     }
   }
   return history;
