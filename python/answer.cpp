@@ -124,9 +124,11 @@ class Answer : public NeverUnmade {
     arrays["hourglass_energy_density"] = numbers(frame.hourglass_energy_densities);
     if (!frame.stresses.empty()) arrays["stress"] = copied<double>(frame.stresses, {elements, 3, 3});
     if (!frame.levels.empty()) arrays["level"] = numbers(frame.levels);
-    py::dict reactions;
-    for (const auto& [set, force] : frame.reactions) reactions[set.c_str()] = copied<double>(force, {3});
-    arrays["reactions"] = reactions;
+    for (const auto& [name, all] : {std::pair{"reactions", &frame.reactions}, {"moments", &frame.moments}}) {
+      py::dict vectors;
+      for (const auto& [set, value] : *all) vectors[set.c_str()] = copied<double>(value, {3});
+      arrays[name] = vectors;
+    }
     return arrays;
   }
 

@@ -302,7 +302,16 @@ PYBIND11_MODULE(_sandglass, m) {
             const std::string set = named("set", given).text("set");
             return py::array_t<double>(py::cast(self.with([&](const auto& s) { return s.reaction(set); })));
           },
-          "set"_a, "The force (N) that holds or drives a set of nodes.")
+          "set"_a, "The force (N) that holds or drives a set of nodes, or of an obstacle on the body.")
+      .def(
+          "moment",
+          [](AnySimulation& self, const py::object& given) {
+            const std::string name = named("obstacle", given).text("obstacle");
+            return py::array_t<double>(py::cast(self.with([&](const auto& s) { return s.moment(name); })));
+          },
+          "obstacle"_a,
+          "The moment (N m) of the force of an obstacle on the body, about the obstacle's `point` where it "
+          "is.")
       .def(
           "nodes",
           [](const py::object& self, const py::object& given) {

@@ -267,10 +267,41 @@ TEST(Simulation, moves_obstacles_as_their_paths_in_the_case_do) {
       if (again == 0) by_case.advance(0.1);
       EXPECT_GT(length(by_case.reaction("ball")), 0.01);
       EXPECT_LT(distance(by_program.reaction("ball"), by_case.reaction("ball")), 1e-9) << method;
+      EXPECT_LT(distance(by_program.moment("ball"), by_case.moment("ball")), 1e-11) << method;
       EXPECT_LT(largest_distance(field_of(by_program), field_of(by_case)), 1e-12) << method;
       by_program.resume(folder / "before");
     }
   }
+}
+
+/// The two ends of a capsule are the same obstacle with another point: moments differ by that of the force. A
+/// ball without friction has none about its centre.
+TEST(Simulation, the_moment_of_an_obstacle_is_about_its_point) {
+  const std::string rod =
+      "[[obstacle]]\nname = \"rod\"\nset = \"head\"\nshape = \"capsule\"\nradius = 0.05\nmethod = ";
+  const auto pressed = [&](const std::string& method, const std::string& ends) {
+    Simulation<double> simulation(block(), text_of(rod + "\"" + method + "\"\n" + ends));
+    simulation.move("rod", {0.01, 0.0, -0.02});
+    simulation.advance(0.1);
+    return simulation;
+  };
+  for (const char* method : {"penalty", "kinematic"}) {
+    const auto forth = pressed(method, "point = [0.02, 0.04, 0.25]\nend = [0.09, 0.04, 0.30]\n"),
+               back = pressed(method, "point = [0.09, 0.04, 0.30]\nend = [0.02, 0.04, 0.25]\n");
+    const Vector force = forth.reaction("rod"), way{0.07, 0.0, 0.05};
+    EXPECT_GT(length(force), 0.01) << method;
+    const Vector expected = sum(back.moment("rod"), 1.0, cross(way, force));
+    EXPECT_LT(distance(forth.moment("rod"), expected), 1e-9) << method;
+    EXPECT_GT(length(forth.moment("rod")), 1e-5) << method;
+  }
+  const Simulation<double> round = [] {
+    Simulation<double> simulation(block(), text_of(ball("penalty")));
+    simulation.move("ball", {0.01, 0.0, -0.02});
+    simulation.advance(0.1);
+    return simulation;
+  }();
+  EXPECT_GT(length(round.reaction("ball")), 0.01);
+  EXPECT_LT(length(round.moment("ball")), 1e-15);
 }
 
 TEST(Simulation, settles_under_an_obstacle_that_it_moved) {
@@ -285,6 +316,7 @@ TEST(Simulation, settles_under_an_obstacle_that_it_moved) {
   }
   EXPECT_GT(length(by_case.reaction("ball")), 0.01);
   EXPECT_LT(distance(by_program.reaction("ball"), by_case.reaction("ball")), 1e-9);
+  EXPECT_LT(distance(by_program.moment("ball"), by_case.moment("ball")), 1e-11);
   EXPECT_LT(largest_distance(field_of(by_program), field_of(by_case)), 1e-12);
   for (Simulation<double>* one : {&by_program, &by_case}) one->advance(0.05);  // the ball stays where it is
   EXPECT_LT(largest_distance(field_of(by_program), field_of(by_case)), 1e-12);
@@ -458,6 +490,7 @@ TEST(Simulation, refuses_what_makes_no_sense) {
   says("obstacle 'ball': 2 displacements",
        input_error([&] { touched.move("ball", std::vector<Vector>(2)); }));
   says("did you mean 'ball'", input_error([&] { touched.move("bal", up); }));
+  says("did you mean 'ball'", input_error([&] { touched.moment("bal"); }));
   const auto made = [](const SimulationSettings& settings) {
     return input_error([&] { Simulation<double>(block(), text_of(pulled), settings); });
   };

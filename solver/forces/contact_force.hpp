@@ -15,6 +15,7 @@ namespace sandglass {
 struct Touch {
   std::string_view name = {};  ///< of the obstacle or of the pair
   Vector force = {};           ///< on the body, or on the first surface, N
+  Vector moment = {};          ///< of this force, about the point of the obstacle where it is, N m
   Vector moved = {};           ///< displacement of the obstacle on which this force works, m
   double depth = 0.0;          ///< the largest of a node, m
   double stored = 0.0;         ///< energy of the contact, J
@@ -29,27 +30,43 @@ struct ContactMemory {
   Row<double>& pushes;  ///< force as in Touch, N; stored energy, J
   Row<double>& moves;   ///< displacement of the obstacle, m; largest depth, m
   Row<double>& sums;    ///< dissipated energy and work since the start, J; contrary nodes; whether fixed
-  Row<double>& passes;  ///< one more than the number of a node that may have passed through
+  Row<double>& turns;   ///< moment as in Touch, N m; one more than a node that may have passed through
   Row<double>* others;
 
   static constexpr std::size_t own = 4;
   explicit ContactMemory(Row<double>* rows)
-      : pushes(rows[0]), moves(rows[1]), sums(rows[2]), passes(rows[3]), others(rows + own) {}
+      : pushes(rows[0]), moves(rows[1]), sums(rows[2]), turns(rows[3]), others(rows + own) {}
 
-  void note_passed(int node) { passes[0] = 1.0 + static_cast<double>(node); }
+  void note_passed(int node) { turns[3] = 1.0 + static_cast<double>(node); }
+
+  /// Forgets the forces of the last evaluation.
+  void clear_forces() {
+    pushes = {};
+    for (std::size_t i = 0; i < 3; ++i) turns[i] = 0.0;
+  }
+
+  /// Adds the force (N) on a node at a place relative to the point of the obstacle, m.
+  void add_force(const Vector& force, const Vector& arm) {
+    const Vector moment = cross(arm, force);
+    for (std::size_t i = 0; i < 3; ++i) {
+      pushes[i] += force[i];
+      turns[i] += moment[i];
+    }
+  }
 };
 
 inline Touch touch_of(std::string_view name, const Row<double>* memory) {
-  const Row<double>&pushes = memory[0], &moves = memory[1], &sums = memory[2];
+  const Row<double>&pushes = memory[0], &moves = memory[1], &sums = memory[2], &turns = memory[3];
   return {name,
           {pushes[0], pushes[1], pushes[2]},
+          {turns[0], turns[1], turns[2]},
           {moves[0], moves[1], moves[2]},
           moves[3],
           pushes[3],
           sums[0],
           sums[1],
           static_cast<int>(sums[2]),
-          static_cast<int>(memory[3][0]) - 1};
+          static_cast<int>(turns[3]) - 1};
 }
 
 /// The share of the depth that a contact can follow from which no step leads to the outside.
@@ -148,10 +165,13 @@ class ContactForce : public BodyForce {
   /// The force that takes its place in static equilibrium; none: it is the same.
   virtual std::shared_ptr<const BodyForce> at_rest() const { return nullptr; }
 
-  /// The body was moved to static equilibrium and stopped there, with this force (N) on it: sets the rows
-  /// such that the next step of a motion is the first.
-  virtual void begin_again(const Vector& force, Row<double>* memory) const {
-    for (std::size_t i = 0; i < 3; ++i) memory[0][i] = force[i];
+  /// The body was moved to static equilibrium and stopped there, with this force (N) and moment (N m) on it:
+  /// sets the rows such that the next step of a motion is the first.
+  virtual void begin_again(const Vector& force, const Vector& moment, Row<double>* memory) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      memory[0][i] = force[i];
+      memory[3][i] = moment[i];
+    }
   }
 
   /// As without friction.

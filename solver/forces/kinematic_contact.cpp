@@ -23,7 +23,7 @@ class KinematicContact final : public ObstacleContact {
     const Vector moved = displacement(factors);
     Row<double>&position = memory.others[0], &last_of_obstacle = memory.others[1];
     const Vector of_obstacle = difference(moved, {position[0], position[1], position[2]});
-    memory.pushes = {};
+    memory.clear_forces();
     for_each_gap(moved, nodes.u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const int node = nodes_[k].node;
       Row<double>&last = memory.others[own + 2 * k], &last_normal = memory.others[own + 2 * k + 1];
@@ -38,15 +38,16 @@ class KinematicContact final : public ObstacleContact {
         const Row<double>& w = nodes.inverse_masses[node];
         const Vector change = correction(gap, direction(gap, last_normal), motion, w);
         motion = sum(motion, 1.0, change);
+        Vector force{};
         for (std::size_t i = 0; i < 3; ++i) {
           if (!(w[i] > 0.0)) continue;
           nodes.u[node][i] += change[i];
           increment[i] += change[i];
-          const double force = change[i] / (w[i] * nodes.gain);
-          memory.pushes[i] += force;
-          memory.sums[0] -= 0.5 * force * (last[i] + motion[i]);
-          memory.sums[1] += 0.5 * force * (last_of_obstacle[i] + of_obstacle[i]);
+          force[i] = change[i] / (w[i] * nodes.gain);
+          memory.sums[0] -= 0.5 * force[i] * (last[i] + motion[i]);
+          memory.sums[1] += 0.5 * force[i] * (last_of_obstacle[i] + of_obstacle[i]);
         }
+        memory.add_force(force, difference(sum(x, 1.0, change), obstacle_.point));
       }
       last = row_of(motion);
       last_normal = row_of(gap.normal);
@@ -70,8 +71,8 @@ class KinematicContact final : public ObstacleContact {
     return make_penalty_contact(nodes_, obstacle_, shape_, curves_, start_);
   }
 
-  void begin_again(const Vector& force, Row<double>* rows) const override {
-    ContactForce::begin_again(force, rows);
+  void begin_again(const Vector& force, const Vector& moment, Row<double>* rows) const override {
+    ContactForce::begin_again(force, moment, rows);
     ContactMemory(rows).others[0] = {};
   }
 

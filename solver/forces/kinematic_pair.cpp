@@ -68,8 +68,8 @@ class KinematicPair final : public SurfacePair {
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
                  std::vector<LoadRates>& /*rates*/) const override {}
 
-  void begin_again(const Vector& force, Row<double>* rows) const override {
-    ContactForce::begin_again(force, rows);
+  void begin_again(const Vector& force, const Vector& moment, Row<double>* rows) const override {
+    ContactForce::begin_again(force, moment, rows);
     ContactMemory(rows).others[0][has_moved] = 0.0;
   }
 

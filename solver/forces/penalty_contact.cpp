@@ -20,7 +20,7 @@ class PenaltyContact final : public ObstacleContact {
                    AtNodes<Row<double>> forces) const override {
     ContactMemory memory(rows);
     const Vector moved = displacement(factors);
-    memory.pushes = {};
+    memory.clear_forces();
     memory.moves = {{moved[0], moved[1], moved[2], 0.0}};
     memory.sums[2] = 0.0;
     const bool fixed = is_fixed(rows);
@@ -44,10 +44,8 @@ class PenaltyContact final : public ObstacleContact {
       Vector force = sum({}, stiffness * (depth + constant), gap.normal);
       if (sticks()) force = sum(force, -stiffness, hold(x, gap, stiffness, of_node, memory));
       of_node[0][3] = 1.0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        forces[node][i] += force[i];
-        memory.pushes[i] += force[i];
-      }
+      for (std::size_t i = 0; i < 3; ++i) forces[node][i] += force[i];
+      memory.add_force(force, difference(x, obstacle_.point));
     });
   }
 

@@ -17,7 +17,7 @@ constexpr std::array history_columns{
     &HistoryRow::time,          &HistoryRow::kinetic,  &HistoryRow::strain,    &HistoryRow::hourglass,
     &HistoryRow::external_work, &HistoryRow::residual, &HistoryRow::step_size, &HistoryRow::adaption,
     &HistoryRow::contact,       &HistoryRow::friction, &HistoryRow::depth};
-static_assert(sizeof(HistoryRow) == history_columns.size() * sizeof(double) + sizeof(Reactions),
+static_assert(sizeof(HistoryRow) == history_columns.size() * sizeof(double) + 2 * sizeof(Reactions),
               "a column is missing");
 
 void write_history(Hdf5File& file, const std::vector<HistoryRow>& history) {
@@ -40,9 +40,11 @@ std::vector<HistoryRow> read_history(const Hdf5File& file) {
   for (auto& row : history) {
     for (const auto column : history_columns) row.*column = *value++;
   }
-  for (const auto& set : file.names_in("/reaction")) {
-    const NodalField forces = read_nodal_field(file, "/reaction/" + set, history.size());
-    for (std::size_t n = 0; n < history.size(); ++n) history[n].reactions[set] = forces[n];
+  for (const auto& [folder, unit, of_frame, of_row] : reaction_groups) {
+    for (const auto& set : file.names_in(folder)) {
+      const NodalField vectors = read_nodal_field(file, folder + set, history.size());
+      for (std::size_t n = 0; n < history.size(); ++n) (history[n].*of_row)[set] = vectors[n];
+    }
   }
   return history;
 }

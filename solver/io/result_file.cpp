@@ -18,11 +18,6 @@ std::string data_item(const std::string& file, const std::string& dataset, const
                      dataset);
 }
 
-/// The dataset of the forces that hold or drive a set.
-std::string reaction_of(const std::string& group, const std::string& set) {
-  return group + "/reaction/" + set;
-}
-
 }  // namespace
 
 std::string frame_group(std::size_t number) {
@@ -52,9 +47,12 @@ void write_frame(Hdf5File& file, const std::string& group, const Frame& frame) {
     file.write(group + "/stress", {n_elements, 3, 3}, std::span<const double>(frame.stresses));
     file.write_attribute(group + "/stress", "unit", "Pa");
   }
-  for (const auto& [set, force] : frame.reactions) {
-    file.write(reaction_of(group, set), {3}, std::span<const double>(force));
-    file.write_attribute(reaction_of(group, set), "unit", "N");
+  for (const auto& [folder, unit, of_frame, of_row] : reaction_groups) {
+    for (const auto& [set, value] : frame.*of_frame) {
+      const std::string name = group + folder + set;
+      file.write(name, {3}, std::span<const double>(value));
+      file.write_attribute(name, "unit", unit);
+    }
   }
   file.write_attribute(group, "time", frame.time);
 }
@@ -70,33 +68,36 @@ Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_n
     return std::move(values.entries);
   };
   const auto read_elements = [&](const std::string& name) { return read_numbers(name, {n_elements}); };
-  Reactions reactions;
-  for (const auto& set : file.names_in(group + "/reaction")) {
-    const auto force = read_numbers("/reaction/" + set, {3});
-    reactions[set] = {force[0], force[1], force[2]};
+  Frame frame{.time = file.read_number_attribute(group, "time"),
+              .u = read_nodal_field(file, group + "/displacement", n_nodes),
+              .v = read_nodal_field(file, group + "/velocity", n_nodes),
+              .jacobians = read_elements("/jacobian"),
+              .hourglass_energy_densities = read_elements("/hourglass_energy_density"),
+              .levels = file.contains(group + "/level") ? read_elements("/level") : std::vector<double>{},
+              .stresses = file.contains(group + "/stress") ? read_numbers("/stress", {n_elements, 3, 3})
+                                                           : std::vector<double>{}};
+  for (const auto& [folder, unit, of_frame, of_row] : reaction_groups) {
+    for (const auto& set : file.names_in(group + folder)) {
+      const auto value = read_numbers(folder + set, {3});
+      (frame.*of_frame)[set] = {value[0], value[1], value[2]};
+    }
   }
-  return {.time = file.read_number_attribute(group, "time"),
-          .u = read_nodal_field(file, group + "/displacement", n_nodes),
-          .v = read_nodal_field(file, group + "/velocity", n_nodes),
-          .jacobians = read_elements("/jacobian"),
-          .hourglass_energy_densities = read_elements("/hourglass_energy_density"),
-          .levels = file.contains(group + "/level") ? read_elements("/level") : std::vector<double>{},
-          .stresses = file.contains(group + "/stress") ? read_numbers("/stress", {n_elements, 3, 3})
-                                                       : std::vector<double>{},
-          .reactions = std::move(reactions)};
+  return frame;
 }
 
 void write_reactions(Hdf5File& file, const std::string& group, const std::vector<HistoryRow>& history) {
   if (history.empty()) return;
-  for (const auto& first : history.front().reactions) {
-    std::vector<double> forces;
-    for (const auto& row : history) {
-      const Vector& force = row.reactions.at(first.first);
-      forces.insert(forces.end(), force.begin(), force.end());
+  for (const auto& [folder, unit, of_frame, of_row] : reaction_groups) {
+    for (const auto& first : history.front().*of_row) {
+      std::vector<double> values;
+      for (const auto& row : history) {
+        const Vector& value = (row.*of_row).at(first.first);
+        values.insert(values.end(), value.begin(), value.end());
+      }
+      const std::string name = group + folder + first.first;
+      file.write(name, {history.size(), 3}, std::span<const double>(values));
+      file.write_attribute(name, "unit", unit);
     }
-    const std::string name = reaction_of(group, first.first);
-    file.write(name, {history.size(), 3}, std::span<const double>(forces));
-    file.write_attribute(name, "unit", "N");
   }
 }
 

@@ -20,7 +20,17 @@ Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_n
 /// The XDMF file beside a result file.
 std::filesystem::path guide_of(const std::filesystem::path& result);
 
-/// Writes the reactions of a history, each set's as GROUP/reaction/SET (rows, 3) in N.
+/// What frames and rows of the history have of sets and obstacles: a vector by name.
+struct ReactionGroup {
+  std::string folder, unit;
+  Reactions Frame::*of_frame;
+  Reactions HistoryRow::*of_row;
+};
+inline const std::array reaction_groups{
+    ReactionGroup{"/reaction/", "N", &Frame::reactions, &HistoryRow::reactions},
+    ReactionGroup{"/moment/", "N m", &Frame::moments, &HistoryRow::moments}};
+
+/// Writes the reactions of a history, each set's as GROUP/reaction/SET (rows, 3) in N, and moments.
 void write_reactions(Hdf5File& file, const std::string& group, const std::vector<HistoryRow>& history);
 
 /// The name of the group of a frame.

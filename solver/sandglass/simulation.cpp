@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/names.hpp"
 #include "io/case_file.hpp"
 #include "io/checkpoint_file.hpp"
 #include "mesh/hash.hpp"
@@ -87,7 +88,7 @@ class Simulation<Real>::Parts {
     elements().set_levels(body.state(), observer.levels);
     body.impose(to_, factor_to_, leapfrog_.time());
     body.evaluate_forces();
-    body.begin_again(observer.reactions);
+    body.begin_again(observer.reactions, observer.moments);
     std::fill(body.state().increment.begin(), body.state().increment.end(), Row<Real>{});
     imposed_ = to_;
     factor_ = factor_to_;
@@ -119,9 +120,10 @@ class Simulation<Real>::Parts {
     void frame(const Frame& frame) override {
       levels = frame.levels;
       reactions = frame.reactions;
+      moments = frame.moments;
     }
     std::vector<double> levels;
-    Reactions reactions;
+    Reactions reactions, moments;
   };
 
   const Model& model() const { return problem_->model(); }
@@ -329,6 +331,14 @@ std::array<double, 3> Simulation<Real>::reaction(const std::string& set) const {
     sum[component] += parts_->body().reactions()[constraint];
   }
   return sum;
+}
+
+template <class Real>
+std::array<double, 3> Simulation<Real>::moment(const std::string& obstacle) const {
+  if (const auto touch = parts_->body().touch(obstacle)) return touch->moment;
+  const Reactions all = parts_->body().moments_of_contacts();
+  throw InputError(
+      fmt::format("obstacle '{}' is not known; {}", obstacle, suggestion(obstacle, names_in(all))));
 }
 
 template <class Real>

@@ -124,6 +124,10 @@ class Simulation {
   /// InputError like `move`.
   std::array<double, 3> reaction(const std::string& set) const;
 
+  /// The moment (N m) of the force of an obstacle on the body about the obstacle's `point` where it is now.
+  /// Throws InputError for an unknown obstacle.
+  std::array<double, 3> moment(const std::string& obstacle) const;
+
   // The mesh, in its own numbering.
 
   std::span<const std::array<double, 3>> points() const;  ///< m

@@ -58,6 +58,13 @@ Reactions Body<Real>::reactions_of_sets() const {
 }
 
 template <class Real>
+Reactions Body<Real>::moments_of_contacts() const {
+  Reactions all;
+  loads_.for_each_touch([&](const Touch& touch) { all[std::string(touch.name)] = touch.moment; });
+  return all;
+}
+
+template <class Real>
 Touch Body<Real>::touch() const {
   Touch sum;
   loads_.for_each_touch([&](const Touch& touch) {

@@ -39,6 +39,9 @@ class Body {
   /// the inertia of its own nodes. And the force of each obstacle on the body, by its name.
   Reactions reactions_of_sets() const;
 
+  /// The moments (N m) of the forces of obstacles and pairs on the body; see Touch.
+  Reactions moments_of_contacts() const;
+
   /// Evaluates the forces of the state. Afterwards the increments of constrained components are cleared, so
   /// that the update of increments can ignore constraints.
   void evaluate_forces();
@@ -102,8 +105,8 @@ class Body {
   void slide(const Rows<Real>& before, Rows<Real>& u) const { loads_.slide(before, u); }
 
   /// See Loads::begin_again; with the reactions at rest.
-  void begin_again(const Reactions& reactions) {
-    loads_.begin_again([&](std::string_view name) { return reactions.at(std::string(name)); });
+  void begin_again(const Reactions& reactions, const Reactions& moments) {
+    loads_.begin_again(reactions, moments);
   }
 
   /// See Loads::fix_contact.

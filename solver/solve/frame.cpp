@@ -17,7 +17,8 @@ Frame frame_of(const Body<Real>& body, double time, NodalField v) {
               std::vector<double>(count),
               elements.levels(state),
               std::vector<double>(9 * count),
-              body.reactions_of_sets()};
+              body.reactions_of_sets(),
+              body.moments_of_contacts()};
   elements.jacobians(state, frame.jacobians);
   elements.hourglass_energy_densities(state, frame.hourglass_energy_densities);
   elements.stresses(state, centred_coordinates<Real>(mesh.points, body.layout()), frame.stresses);

@@ -51,6 +51,15 @@ void Loads<Real>::set(double time, double load_factor) {
 }
 
 template <class Real>
+void Loads<Real>::begin_again(const Reactions& forces, const Reactions& moments) {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Row<double>* memory = memory_.data() + memory_of_[c];
+    const std::string name(contacts_[c]->touch(memory).name);
+    contacts_[c]->begin_again(forces.at(name), moments.at(name), memory);
+  }
+}
+
+template <class Real>
 void Loads<Real>::move_obstacles(std::span<const double> moves) {
   for (std::size_t k = 0; k < moves.size(); ++k) factors_[movable_[k / 3].first_curve + k % 3] = moves[k];
 }

@@ -2,6 +2,7 @@
 
 #include "assembly/internal_force.hpp"
 #include "forces/contact_force.hpp"
+#include "problem/observer.hpp"
 #include "problem/scene.hpp"
 
 namespace sandglass {
@@ -46,14 +47,8 @@ class Loads {
   /// See ContactForce::slide.
   void slide(const Rows<Real>& before, Rows<Real>& u) const;
 
-  /// See ContactForce::begin_again; force_of(name) is the force of an obstacle.
-  template <class ForceOf>
-  void begin_again(const ForceOf& force_of) {
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      Row<double>* memory = memory_.data() + memory_of_[c];
-      contacts_[c]->begin_again(force_of(contacts_[c]->touch(memory).name), memory);
-    }
-  }
+  /// See ContactForce::begin_again, with the forces and moments of obstacles by name.
+  void begin_again(const Reactions& forces, const Reactions& moments);
 
   /// See ContactForce::fix_contact.
   void fix_contact(bool fixed);

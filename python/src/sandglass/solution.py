@@ -33,9 +33,10 @@ class Solution:
 
     def frame(self, number=-1):
         """A frame: a dict of time (s), displacement and velocity (n, 3; m, m/s), volume_ratio (m,),
-        stress (m, 3, 3; Pa, Cauchy, mean of the element), hourglass_energy_density (m,; J/m^3) and
-        reactions, a dict from driven sets to forces (3,; N). Negative numbers count from the end.
-        Raises IndexError.
+        stress (m, 3, 3; Pa, Cauchy, mean of the element), hourglass_energy_density (m,; J/m^3),
+        reactions, a dict from driven sets and obstacles to forces (3,; N), and moments, one from
+        obstacles to moments (3,; N m) about their points. Negative numbers count from the end. Raises
+        IndexError.
         """
         return self._frame("number", number)
 
@@ -180,7 +181,11 @@ class Solution:
 
             write_vtu(self.to_vtk(), partial)
         else:
-            arrays = {key: value for key, value in self.frame().items() if key != "reactions"}
+            arrays = {
+                key: value
+                for key, value in self.frame().items()
+                if key not in ("reactions", "moments")
+            }
             np.savez_compressed(partial, points=self.points, cells=self.cells, **arrays)
         os.replace(partial, file)
 
