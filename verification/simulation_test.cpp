@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/case_file.hpp"
+#include "mesh/vectors.hpp"
 #include "sandglass/driven_problem.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
@@ -292,7 +293,7 @@ TEST(Simulation, the_moment_of_an_obstacle_is_about_its_point) {
     EXPECT_GT(length(force), 0.01) << method;
     const Vector expected = sum(back.moment("rod"), 1.0, cross(way, force));
     EXPECT_LT(distance(forth.moment("rod"), expected), 1e-9) << method;
-    EXPECT_GT(length(forth.moment("rod")), 1e-5) << method;
+    EXPECT_GT(length(back.moment("rod")), 1e-4) << method;
   }
   const Simulation<double> round = [] {
     Simulation<double> simulation(block(), text_of(ball("penalty")));

@@ -192,6 +192,9 @@ class KinematicPair final : public SurfacePair {
   /// lasting load would oscillate from step to step.
   static constexpr double returned = 0.5;
 
+  /// The share of its depth by which such a point leaves in a step beyond that: a depth does not last.
+  static constexpr double recovered = 0.02;
+
   /// Changes the impulse of a point so that it is on the face. Returns by how much it moves, m.
   double separate(const Meeting& meeting, const NodalPush& nodes) const {
     const Vector n = meeting.direction(), end = meeting.direction_at_end();
@@ -210,9 +213,11 @@ class KinematicPair final : public SurfacePair {
         });
     if (!(along_n > 0.0)) return 0.0;
     double& impulse = meeting.normal[3];
-    const double arrived = dot(last, n), leaves = arrived < 0.0 ? returned * arrived : arrived;
+    const double inside = dot(apart, end), arrived = dot(last, n),
+                 leaves = arrived < 0.0 ? returned * arrived : arrived;
     const double before = std::exchange(
-        impulse, std::max(0.0, impulse - std::max(dot(apart, end), dot(motion, n) + leaves) / along_n));
+        impulse,
+        std::max(0.0, impulse - std::max(inside, dot(motion, n) + leaves + recovered * inside) / along_n));
     Vector change = sum({}, impulse - before, n);
     if (contact_.friction > 0.0) {
       const Vector old{meeting.along[0], meeting.along[1], meeting.along[2]};

@@ -173,7 +173,7 @@ std::string ResultWriter::xdmf() const {
       text += attribute(group + "/stress", "stress [Pa]", "Tensor", "Cell", fmt::format("{} 3 3", n_cells));
     }
     for (const auto& driven : model_.scene().driven) {
-      text += attribute(reaction_of(group, driven.name), fmt::format("reaction at {} [N]", driven.name),
+      text += attribute(group + "/reaction/" + driven.name, fmt::format("reaction at {} [N]", driven.name),
                         "Vector", "Grid", "3");
     }
     text += "      </Grid>\n";
