@@ -35,8 +35,8 @@ class Solution:
         """A frame: a dict of time (s), displacement and velocity (n, 3; m, m/s), volume_ratio (m,),
         stress (m, 3, 3; Pa, Cauchy, mean of the element), hourglass_energy_density (m,; J/m^3),
         reactions, a dict from driven sets and obstacles to forces (3,; N), and moments, one from
-        obstacles to moments (3,; N m) about their points. Negative numbers count from the end. Raises
-        IndexError.
+        obstacles to moments (3,; N m) about their points. Negative numbers count from the end.
+        Raises IndexError.
         """
         return self._frame("number", number)
 
