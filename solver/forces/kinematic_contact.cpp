@@ -89,8 +89,10 @@ class KinematicContact final : public ObstacleContact {
   bool leaps(const Gap& end, const Vector& x, const Vector& motion) const {
     const double way = length(motion), half = half_thickness();
     if (!(way > half) || end.distance < 0.0 || end.distance > way) return false;
-    for (double from_end = half; from_end < way; from_end += half) {
-      if (gap_at(sum(x, -from_end / way, motion)).distance < -rounding_) return true;
+    constexpr double most = 1000.0;  // of a motion without end
+    const int places = static_cast<int>(std::min(way / half, most));
+    for (int k = 1; k <= places; ++k) {
+      if (gap_at(sum(x, -k / (places + 1.0), motion)).distance < -rounding_) return true;
     }
     return false;
   }
