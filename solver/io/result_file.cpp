@@ -49,7 +49,7 @@ void write_frame(Hdf5File& file, const std::string& group, const Frame& frame) {
   }
   for (const auto& [folder, unit, of_frame, of_row] : reaction_groups) {
     for (const auto& [set, value] : frame.*of_frame) {
-      const std::string name = group + folder + set;
+      const std::string name = fmt::format("{}{}{}", group, folder, set);
       file.write(name, {3}, std::span<const double>(value));
       file.write_attribute(name, "unit", unit);
     }
@@ -94,7 +94,7 @@ void write_reactions(Hdf5File& file, const std::string& group, const std::vector
         const Vector& value = (row.*of_row).at(first.first);
         values.insert(values.end(), value.begin(), value.end());
       }
-      const std::string name = group + folder + first.first;
+      const std::string name = fmt::format("{}{}{}", group, folder, first.first);
       file.write(name, {history.size(), 3}, std::span<const double>(values));
       file.write_attribute(name, "unit", unit);
     }
@@ -173,8 +173,8 @@ std::string ResultWriter::xdmf() const {
       text += attribute(group + "/stress", "stress [Pa]", "Tensor", "Cell", fmt::format("{} 3 3", n_cells));
     }
     for (const auto& driven : model_.scene().driven) {
-      text += attribute(group + "/reaction/" + driven.name, fmt::format("reaction at {} [N]", driven.name),
-                        "Vector", "Grid", "3");
+      text += attribute(fmt::format("{}/reaction/{}", group, driven.name),
+                        fmt::format("reaction at {} [N]", driven.name), "Vector", "Grid", "3");
     }
     text += "      </Grid>\n";
   }
