@@ -55,7 +55,7 @@ struct Touched {
   const ContactForce* contact;
 
   /// `away` (m) keeps the undeformed body out of the obstacle.
-  explicit Touched(Obstacle obstacle, const Vector& away) {
+  explicit Touched(const Obstacle& obstacle, const Vector& away) {
     for (Vector& X : mesh.points) {
       for (std::size_t i = 0; i < 3; ++i) X[i] += away[i] - 0.1;
     }
