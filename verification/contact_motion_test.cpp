@@ -44,6 +44,8 @@ TEST(Contact, stops_a_bar_as_derived) {
   for (std::size_t n = 1; n < recorder.rows.size(); ++n) {
     const HistoryRow &row = recorder.rows[n], &before = recorder.rows[n - 1];
     const double f = row.reactions.at("ground")[2], step = row.time - before.time;
+    // The bar stands in the first quadrant beside the point of the ground: its middle is the arm.
+    EXPECT_NEAR(row.moments.at("ground")[1], -0.5 * a * f, 1e-9 * force);
     EXPECT_LE(total_energy(row), 1.002 * start);
     impulse += 0.5 * step * (f + before.reactions.at("ground")[2]);
     if (row.time > touch + 0.2 * lasts && row.time < touch + 0.8 * lasts) {

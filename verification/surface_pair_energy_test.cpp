@@ -41,6 +41,15 @@ Mesh ball(double radius, int n) {
   });
 }
 
+/// The lower body is held at its foot, and the upper one falls or slides on it for two seconds.
+void put_under_weight(Case& description, Contact::Method method) {
+  description.displacements = {{"foot", {}}};
+  description.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
+  description.forces.of<Contact>() = {pair_of("upper", "lower", method)};
+  description.dynamics.duration = 2.0;
+  description.dynamics.check_interval = 10;
+}
+
 /// A box on a softer, larger one, with meshes that match: points lie on faces to rounding, which has no
 /// direction; taken for one, the motion was no longer finite after ten steps. The box rests off the centre
 /// and slides away as the lower box yields; its energy is what its weight works, less what vibrations lose.
@@ -50,13 +59,8 @@ TEST(SurfacePair, lets_a_box_slide_on_a_box) {
       TwoBodies bodies(box({1.0, 1.0, 0.5}, {4, 4, 2}),
                        moved(box({0.6, 0.6, 0.3}, {3, 3, 2}), {0.17, 0.23, 0.5}),
                        NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
-      Case& d = bodies.description;
-      d.displacements = {{"foot", {}}};
-      d.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
-      d.forces.of<Contact>() = {pair_of("upper", "lower", method)};
-      d.dynamics.duration = 2.0;
-      d.dynamics.step_fraction = fraction;
-      d.dynamics.check_interval = 10;
+      put_under_weight(bodies.description, method);
+      bodies.description.dynamics.step_fraction = fraction;
       const Scene scene = bodies.scene();
       Recorder recorder;
       integrate(Model(scene, {"tl-perturbation"}), recorder);
@@ -81,12 +85,7 @@ TEST(SurfacePair, gains_no_energy_on_curved_surfaces) {
       TwoBodies bodies(std::move(bowl),
                        moved(ball(0.25, 4), {in_bowl ? 0.5 : 0.02, 0.0, in_bowl ? 0.55 : 0.92}),
                        NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
-      Case& d = bodies.description;
-      d.displacements = {{"foot", {}}};
-      d.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
-      d.forces.of<Contact>() = {pair_of("upper", "lower", method)};
-      d.dynamics.duration = 2.0;
-      d.dynamics.check_interval = 10;
+      put_under_weight(bodies.description, method);
       const Scene scene = bodies.scene();
       Recorder recorder;
       integrate(Model(scene, {"tl-perturbation"}), recorder);

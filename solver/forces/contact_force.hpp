@@ -13,16 +13,16 @@ namespace sandglass {
 
 /// How a body and an obstacle, or two surfaces of a body, touched at an evaluation.
 struct Touch {
-  std::string_view name = {};  ///< of the obstacle or of the pair
-  Vector force = {};           ///< on the body, or on the first surface, N
-  Vector moment = {};          ///< of this force, about the point of the obstacle where it is, N m
-  Vector moved = {};           ///< displacement of the obstacle on which this force works, m
-  double depth = 0.0;          ///< the largest of a node, m
-  double stored = 0.0;         ///< energy of the contact, J
-  double dissipated = 0.0;     ///< since the start, J
-  double worked = 0.0;         ///< by an obstacle that moves nodes, since the start, J
-  int contrary = 0;            ///< nodes whose fixed contact pulls them, or lets them penetrate
-  int passed = -1;             ///< a node that may have passed through since the start; -1: none
+  std::string_view name = {};         ///< of the obstacle or of the pair
+  Vector force = {};                  ///< on the body, or on the first surface, N
+  Vector moved = {};                  ///< displacement of the obstacle on which this force works, m
+  double depth = 0.0;                 ///< the largest of a node, m
+  double stored = 0.0;                ///< energy of the contact, J
+  double dissipated = 0.0;            ///< since the start, J
+  double worked = 0.0;                ///< by an obstacle that moves nodes, since the start, J
+  int contrary = 0;                   ///< nodes whose fixed contact pulls them, or lets them penetrate
+  int passed = -1;                    ///< a node that may have passed through since the start; -1: none
+  std::optional<Vector> moment = {};  ///< of the force of an obstacle, about its point where it is, N m
 };
 
 /// The rows that every contact keeps, before its own.
@@ -59,7 +59,6 @@ inline Touch touch_of(std::string_view name, const Row<double>* memory) {
   const Row<double>&pushes = memory[0], &moves = memory[1], &sums = memory[2], &turns = memory[3];
   return {name,
           {pushes[0], pushes[1], pushes[2]},
-          {turns[0], turns[1], turns[2]},
           {moves[0], moves[1], moves[2]},
           moves[3],
           pushes[3],

@@ -24,6 +24,7 @@ class KinematicContact final : public ObstacleContact {
     Row<double>&position = memory.others[0], &last_of_obstacle = memory.others[1];
     const Vector of_obstacle = difference(moved, {position[0], position[1], position[2]});
     memory.clear_forces();
+    const double half = half_thickness();
     for_each_gap(moved, nodes.u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const int node = nodes_[k].node;
       Row<double>&last = memory.others[own + 2 * k], &last_normal = memory.others[own + 2 * k + 1];
@@ -33,7 +34,7 @@ class KinematicContact final : public ObstacleContact {
         last = {{0.5 * motion[0], 0.5 * motion[1], 0.5 * motion[2], 0.0}};  // its force acts for half a step
         last_normal = row_of(gap_at(difference(x, motion)).normal);
       }
-      if (gap.distance < -deep * half_thickness() || leaps(gap, x, motion)) memory.note_passed(node);
+      if (gap.distance < -deep * half || leaps(gap, x, motion, half)) memory.note_passed(node);
       if (gap.distance < 0.0) {
         const Row<double>& w = nodes.inverse_masses[node];
         const Vector change = correction(gap, direction(gap, last_normal), motion, w);
@@ -85,9 +86,9 @@ class KinematicContact final : public ObstacleContact {
     return make_kinematic_contact(std::move(nodes), obstacle_, shape_, curves_, start_);
   }
 
-  /// Whether a node that moves by more than half the thickness in a step passes through the obstacle.
-  bool leaps(const Gap& end, const Vector& x, const Vector& motion) const {
-    const double way = length(motion), half = half_thickness();
+  /// Whether a node that moves by more than half the thickness (m) in a step passes through the obstacle.
+  bool leaps(const Gap& end, const Vector& x, const Vector& motion, double half) const {
+    const double way = length(motion);
     if (!(way > half) || end.distance < 0.0 || end.distance > way) return false;
     constexpr double most = 1000.0;  // of a motion without end
     const int places = static_cast<int>(std::min(way / half, most));

@@ -11,8 +11,9 @@ namespace {
 
 /// Points remember also the weights of the point of the face that they meet; the direction to it where the
 /// step starts and their impulse along it, kg m; their impulse along the face, kg m; the direction to it
-/// where the step ends. Nodes remember their motion in the last step, and how far the contact moves them in
-/// this one, m. The strength of points that touch is one more than the number of the triangle of the face.
+/// where the step ends, and the motion with which they may leave, m. Nodes remember their motion in the last
+/// step, and how far the contact moves them in this one, m. The strength of points that touch is one more
+/// than the number of the triangle of the face.
 class KinematicPair final : public SurfacePair {
  public:
   KinematicPair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
@@ -36,7 +37,7 @@ class KinematicPair final : public SurfacePair {
       const Meeting meeting = meeting_of(side, k, memory);
       const auto [end, n] = MovingSurface::directions(
           foot, x, meeting.onto.corners_now(foot.face, meeting.of_onto), meeting.corners_before(nodes));
-      remembered[4] = {{end[0], end[1], end[2]}};
+      remembered[4] = {{end[0], end[1], end[2], motion_to_leave(meeting, n)}};
       remembered[1] = weights_before(meeting, n, nodes);
       remembered[2] = {{n[0], n[1], n[2], is_new ? 0.0 : remembered[2][3]}};
       const Vector along{remembered[3][0], remembered[3][1], remembered[3][2]};
@@ -81,7 +82,7 @@ class KinematicPair final : public SurfacePair {
     const Quadrilateral& corners;
     const Row<double>& weights;  // of the corners
     Row<double>&normal, &along;  // with the impulses
-    const Row<double>& end;      // normal
+    const Row<double>& end;      // normal, with the motion to leave
     Row<double>*of_from, *of_onto, *nodes_from, *nodes_onto;
 
     std::size_t triangle;  // of the face
@@ -195,16 +196,25 @@ class KinematicPair final : public SurfacePair {
   /// The share of its depth by which such a point leaves in a step beyond that: a depth does not last.
   static constexpr double recovered = 0.02;
 
+  /// The motion (m) along n with which a point may leave the face in this step, from that in the last.
+  static double motion_to_leave(const Meeting& meeting, const Vector& n) {
+    Vector last{};
+    meeting.for_each_node([&](int, std::size_t place, double weight, const Row<double>*, Row<double>* rows) {
+      for (std::size_t i = 0; i < 3; ++i) last[i] += weight * rows[2 * place][i];
+    });
+    const double arrived = dot(last, n);
+    return arrived < 0.0 ? returned * arrived : arrived;
+  }
+
   /// Changes the impulse of a point so that it is on the face. Returns by how much it moves, m.
   double separate(const Meeting& meeting, const NodalPush& nodes) const {
     const Vector n = meeting.direction(), end = meeting.direction_at_end();
-    Vector apart{}, motion{}, last{};
+    Vector apart{}, motion{};
     double along_n = 0.0, mobility = 0.0;  // 1/kg, of an impulse along n, and in the mean
     meeting.for_each_node(
-        [&](int node, std::size_t place, double weight, const Row<double>* x, Row<double>* rows) {
+        [&](int node, std::size_t place, double weight, const Row<double>* x, Row<double>*) {
           const Row<double>&w = nodes.inverse_masses[node], &increment = nodes.increment[node];
           for (std::size_t i = 0; i < 3; ++i) {
-            last[i] += weight * rows[2 * place][i];
             apart[i] += weight * x[place][i];
             motion[i] += weight * increment[i];
             along_n += weight * weight * w[i] * n[i] * end[i];
@@ -213,8 +223,7 @@ class KinematicPair final : public SurfacePair {
         });
     if (!(along_n > 0.0)) return 0.0;
     double& impulse = meeting.normal[3];
-    const double inside = dot(apart, end), arrived = dot(last, n),
-                 leaves = arrived < 0.0 ? returned * arrived : arrived;
+    const double inside = dot(apart, end), leaves = meeting.end[3];
     const double before = std::exchange(
         impulse,
         std::max(0.0, impulse - std::max(inside, dot(motion, n) + leaves + recovered * inside) / along_n));

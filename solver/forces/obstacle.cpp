@@ -99,12 +99,12 @@ void Obstacle::resolve(ForceResolver& resolver) const {
                 fmt::format("is {:.3g} m inside of it at the start", depth),
                 fmt::format("a body that is {} of it", inside ? "within" : "outside"));
   }
-  const Vector place = contact->point_of_shape();
-  if (std::isfinite(place[0]) && !inside && winding_number(place, resolver.boundary, resolver.points) > 0.5) {
+  const auto place = contact->point_of_shape();
+  if (place && !inside && winding_number(*place, resolver.boundary, resolver.points) > 0.5) {
     throw InputError(
         fmt::format("{}: {} '{}': its point ({:.6g}, {:.6g}, {:.6g}) m is within the body at the "
                     "start; allowed: an obstacle outside of it",
-                    resolver.file, name, label, place[0], place[1], place[2]));
+                    resolver.file, name, label, (*place)[0], (*place)[1], (*place)[2]));
   }
   resolver.forces.push_back(std::move(contact));
 }

@@ -19,8 +19,7 @@ struct ObstacleCurves {
   std::size_t first_move;  ///< of three, by a program, m
 };
 
-/// An obstacle where it is, and the nodes that may touch it: what all methods share. They keep three rows,
-/// and others for each node.
+/// An obstacle where it is, and the nodes that may touch it: what all methods share.
 class ObstacleContact : public ContactForce {
  public:
   ObstacleContact(std::vector<TouchingNode> nodes, const Obstacle& obstacle, ObstacleShape shape,
@@ -38,14 +37,12 @@ class ObstacleContact : public ContactForce {
   /// Of a node inside the obstacle, m; negative outside.
   double depth_at_start(const TouchingNode& one) const { return -gap_at(difference(one.X, start_)).distance; }
 
-  /// A point of the obstacle at the start, m; NaN of shapes without end, which reach out of any body.
-  Vector point_of_shape() const {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const Vector point = obstacle_.shape == Obstacle::Shape::surface ? std::get<SurfaceShape>(shape_).point()
-                                                                     : obstacle_.point;
-    const bool ends =
-        obstacle_.shape != Obstacle::Shape::plane && obstacle_.shape != Obstacle::Shape::cylinder;
-    return ends ? sum(point, 1.0, start_) : Vector{none, none, none};
+  /// A point of the obstacle at the start, m; none of shapes without end, which reach out of any body.
+  std::optional<Vector> point_of_shape() const {
+    using Shape = Obstacle::Shape;
+    if (obstacle_.shape == Shape::plane || obstacle_.shape == Shape::cylinder) return std::nullopt;
+    const bool is_surface = obstacle_.shape == Shape::surface;
+    return sum(is_surface ? std::get<SurfaceShape>(shape_).point() : obstacle_.point, 1.0, start_);
   }
 
   double half_thickness() const final {
@@ -55,7 +52,12 @@ class ObstacleContact : public ContactForce {
   double travel() const final { return length(obstacle_.displacement); }
   std::optional<Movable> movable() const final { return Movable{obstacle_.label, curves_.first_move}; }
 
-  Touch touch(const Row<double>* memory) const final { return touch_of(obstacle_.label, memory); }
+  Touch touch(const Row<double>* memory) const final {
+    Touch touch = touch_of(obstacle_.label, memory);
+    const Row<double>& turns = memory[3];
+    touch.moment = Vector{turns[0], turns[1], turns[2]};
+    return touch;
+  }
 
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final {
     std::vector<TouchingNode> inside;

@@ -24,6 +24,7 @@ class PenaltyContact final : public ObstacleContact {
     memory.moves = {{moved[0], moved[1], moved[2], 0.0}};
     memory.sums[2] = 0.0;
     const bool fixed = is_fixed(rows);
+    const double deepest = deep * half_thickness();
     for_each_gap(moved, u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const auto& [node, X, stiffness] = nodes_[k];
       Row<double>* of_node = memory.others + by_node() * k;
@@ -38,7 +39,7 @@ class PenaltyContact final : public ObstacleContact {
       }
       if (!touches) return;
       const double depth = -gap.distance;
-      if (depth > deep * half_thickness()) memory.note_passed(node);
+      if (depth > deepest) memory.note_passed(node);
       memory.pushes[3] += 0.5 * stiffness * depth * (depth + 2.0 * constant);
       memory.moves[3] = std::max(memory.moves[3], depth);
       Vector force = sum({}, stiffness * (depth + constant), gap.normal);

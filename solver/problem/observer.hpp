@@ -28,7 +28,7 @@ struct HistoryRow {
   double contact = 0.0;      ///< J, stored where obstacles are touched
   double friction = 0.0;     ///< J, dissipated on obstacles
   double depth = 0.0;        ///< m, the largest of a node inside an obstacle
-  Reactions moments = {};    ///< of contacts, N m; see Touch
+  Reactions moments = {};    ///< of obstacles, N m; see Touch
 };
 
 /// A frame of the results, in the numbering of the mesh.
@@ -41,7 +41,7 @@ struct Frame {
   std::vector<double> levels;                      ///< of each element; empty if the method has only one
   std::vector<double> stresses = {};  ///< Pa, Cauchy, the mean of each element: nine numbers, row by row
   Reactions reactions = {};           ///< N
-  Reactions moments = {};             ///< of contacts, N m; see Touch
+  Reactions moments = {};             ///< of obstacles, N m; see Touch
 };
 
 /// The receiver of a stepper's reports. The base class ignores them.

@@ -335,8 +335,8 @@ std::array<double, 3> Simulation<Real>::reaction(const std::string& set) const {
 
 template <class Real>
 std::array<double, 3> Simulation<Real>::moment(const std::string& obstacle) const {
-  if (const auto touch = parts_->body().touch(obstacle)) return touch->moment;
-  const Reactions all = parts_->body().moments_of_contacts();
+  if (const auto touch = parts_->body().touch(obstacle); touch && touch->moment) return *touch->moment;
+  const Reactions all = parts_->body().moments_of_obstacles();
   throw InputError(
       fmt::format("obstacle '{}' is not known; {}", obstacle, suggestion(obstacle, names_in(all))));
 }

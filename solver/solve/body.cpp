@@ -58,9 +58,11 @@ Reactions Body<Real>::reactions_of_sets() const {
 }
 
 template <class Real>
-Reactions Body<Real>::moments_of_contacts() const {
+Reactions Body<Real>::moments_of_obstacles() const {
   Reactions all;
-  loads_.for_each_touch([&](const Touch& touch) { all[std::string(touch.name)] = touch.moment; });
+  loads_.for_each_touch([&](const Touch& touch) {
+    if (touch.moment) all[std::string(touch.name)] = *touch.moment;
+  });
   return all;
 }
 

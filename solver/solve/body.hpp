@@ -39,8 +39,8 @@ class Body {
   /// the inertia of its own nodes. And the force of each obstacle on the body, by its name.
   Reactions reactions_of_sets() const;
 
-  /// The moments (N m) of the forces of obstacles and pairs on the body; see Touch.
-  Reactions moments_of_contacts() const;
+  /// The moments (N m) of the forces of obstacles on the body; see Touch.
+  Reactions moments_of_obstacles() const;
 
   /// Evaluates the forces of the state. Afterwards the increments of constrained components are cleared, so
   /// that the update of increments can ignore constraints.
@@ -104,7 +104,7 @@ class Body {
   /// See Loads::slide.
   void slide(const Rows<Real>& before, Rows<Real>& u) const { loads_.slide(before, u); }
 
-  /// See Loads::begin_again; with the reactions at rest.
+  /// See Loads::begin_again; with the reactions and moments at rest.
   void begin_again(const Reactions& reactions, const Reactions& moments) {
     loads_.begin_again(reactions, moments);
   }

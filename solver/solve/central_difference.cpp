@@ -308,7 +308,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   const auto report = [&] {
     observer.history({scheme.time(), kinetic, energies.strain, energies.hourglass, scheme.external_work(),
                       body.residual(), scheme.step_size(), scheme.adaption_energy(), body.reactions_of_sets(),
-                      touch.stored, touch.dissipated, touch.depth, body.moments_of_contacts()});
+                      touch.stored, touch.dissipated, touch.depth, body.moments_of_obstacles()});
     if (frame_due()) {
       observer.frame(frame_of(body, scheme.time(), std::move(v)));
       ++frames;

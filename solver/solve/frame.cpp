@@ -18,7 +18,7 @@ Frame frame_of(const Body<Real>& body, double time, NodalField v) {
               elements.levels(state),
               std::vector<double>(9 * count),
               body.reactions_of_sets(),
-              body.moments_of_contacts()};
+              body.moments_of_obstacles()};
   elements.jacobians(state, frame.jacobians);
   elements.hourglass_energy_densities(state, frame.hourglass_energy_densities);
   elements.stresses(state, centred_coordinates<Real>(mesh.points, body.layout()), frame.stresses);

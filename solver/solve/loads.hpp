@@ -117,10 +117,10 @@ class Loads {
   std::vector<std::size_t> rows_;       // that carry loads
   std::vector<bool> owned_;             // by this rank, of these
   std::shared_ptr<const Ranks> ranks_;
-  std::vector<int> place_of_node_;  // among the loaded rows; -1 for others
-  bool all_dead_;                   // no force depends on the motion of the body
-  std::vector<double> factors_;     // of curves
-  std::vector<Movable> movable_;
+  std::vector<int> place_of_node_;       // among the loaded rows; -1 for others
+  bool all_dead_;                        // no force depends on the motion of the body
+  std::vector<double> factors_;          // of curves
+  std::vector<Movable> movable_;         // obstacles
   Rows<double> u_, increment_;           // m, of loaded rows; zero where all are dead
   Rows<double> forces_;                  // N, of loaded rows, except those of obstacles
   Rows<double> touching_;                // N, those; empty without any

@@ -379,7 +379,7 @@ class Search {
     observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
                        energies.hourglass, work_ + body().work_of_loads(), equilibrium_.residual(),
                        load_levels_.increment(), 0.0, body().reactions_of_sets(), touch.stored,
-                       touch.dissipated, touch.depth, body().moments_of_contacts()});
+                       touch.dissipated, touch.depth, body().moments_of_obstacles()});
   }
 
   const Model& model_;
