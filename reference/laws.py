@@ -33,6 +33,17 @@ def st_venant_kirchhoff(F, *, young_modulus, poisson_ratio):
     return energy - K / 2 * (J - 1) ** 2, K
 
 
+def compressible_neo_hookean(F, *, young_modulus, poisson_ratio):
+    """The law of Bonet and Wood, mu/2 (tr(F^T F) - 3) - mu ln J + lambda/2 (ln J)^2.
+
+    It does not split either.
+    """
+    mu, K = _moduli(young_modulus, poisson_ratio)
+    log_J = ufl.ln(ufl.det(F))
+    energy = mu / 2 * (ufl.inner(F, F) - 3) - mu * log_J + (K - 2 * mu / 3) / 2 * log_J**2
+    return energy - K / 2 * (ufl.det(F) - 1) ** 2, K
+
+
 def mooney_rivlin(F, *, c10, c01, bulk_modulus):
     """Linear in the isochoric invariants, c10 (I1bar - 3) + c01 (I2bar - 3)."""
     C, J = F.T * F, ufl.det(F)
@@ -116,6 +127,7 @@ LAWS = {
     "fibre-neo-hookean": fibre_neo_hookean,
     "guccione": guccione,
     "holzapfel-ogden": holzapfel_ogden,
+    "compressible-neo-hookean": compressible_neo_hookean,
 }
 
 VISCOELASTIC = "viscoelastic-"

@@ -52,6 +52,12 @@ Tensor<Real> textbook_piola(const StVenantKirchhoff& law, const Tensor<Real>& F)
   return F * ((lambda * trace(E)) * identity<Real>() + (2 * mu) * E);
 }
 
+Tensor<Real> textbook_piola(const CompressibleNeoHookean& law, const Tensor<Real>& F) {
+  const Real J = determinant(F), mu = law.shear_modulus();
+  const Real lambda = static_cast<Real>(law.bulk_modulus()) - 2 * mu / 3;
+  return mu * F + ((lambda * std::log(J) - mu) / J) * cofactor(F);
+}
+
 Tensor<Real> textbook_piola(const MooneyRivlin& law, const Tensor<Real>& F) {
   const Tensor<Real> b = isochoric_left_cauchy_green(F);
   const Real c10 = law.c10, c01 = law.c01;
@@ -128,7 +134,8 @@ struct LawName {
 };
 
 using LawsWithTextbooks =
-    ::testing::Types<StVenantKirchhoff, MooneyRivlin, Yeoh, FibreNeoHookean, Guccione, HolzapfelOgden>;
+    ::testing::Types<StVenantKirchhoff, CompressibleNeoHookean, MooneyRivlin, Yeoh, FibreNeoHookean, Guccione,
+                     HolzapfelOgden>;
 TYPED_TEST_SUITE(LawOracleTest, LawsWithTextbooks, LawName);
 
 /// In long double the textbook's cancellation costs 1e-19/|H|. Also without the volumetric part, which
@@ -291,6 +298,20 @@ TEST(StVenantKirchhoff, uniaxial_stress) {
       EXPECT_NEAR(P(1, 1), 0.0, tolerance(law, H));
       const double green = (s * s - 1) / 2;
       EXPECT_NEAR(law.energy(H), sample_young_modulus * green * green / 2, tolerance(law, H));
+    }
+  }
+}
+
+/// P = mu (s - 1/s) + lambda ln(s) / s along the stretch s, lambda ln(s) across it.
+TEST(CompressibleNeoHookean, uniaxial_strain) {
+  for (const double nu : poisson_ratios) {
+    const auto law = sample_law<CompressibleNeoHookean>(nu);
+    const double lambda = lame_lambda(law), mu = law.shear_modulus();
+    for (const double s : stretches) {
+      const auto H = diagonal_gradient(s, 1.0, 1.0);
+      const auto P = law.piola(H);
+      EXPECT_NEAR(P(0, 0), mu * (s - 1 / s) + lambda * std::log(s) / s, tolerance(law, H));
+      EXPECT_NEAR(P(1, 1), lambda * std::log(s), tolerance(law, H));
     }
   }
 }

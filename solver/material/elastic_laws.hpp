@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/type_list.hpp"
+#include "material/compressible_neo_hookean.hpp"
 #include "material/fibre_neo_hookean.hpp"
 #include "material/guccione.hpp"
 #include "material/holzapfel_ogden.hpp"
@@ -24,7 +25,8 @@ namespace sandglass {
 template <class Value>
 using ElasticLawsOf =
     TypeList<NeoHookeanOf<Value>, StVenantKirchhoffOf<Value>, MooneyRivlinOf<Value>, YeohOf<Value>,
-             OgdenOf<Value>, FibreNeoHookeanOf<Value>, GuccioneOf<Value>, HolzapfelOgdenOf<Value>>;
+             OgdenOf<Value>, FibreNeoHookeanOf<Value>, GuccioneOf<Value>, HolzapfelOgdenOf<Value>,
+             CompressibleNeoHookeanOf<Value>>;
 using ElasticLaws = ElasticLawsOf<double>;
 
 }  // namespace sandglass

@@ -128,9 +128,7 @@ struct StVenantKirchhoffOf : QuadraticVolume<StVenantKirchhoffOf<Value>> {
   /// The same without K/2 (J - 1)^2.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
-    const T J_minus_one = jacobian_minus_one(H);
-    return tangent_bound(H) + volumetric_tangent_bound(T(1) + J_minus_one, -this->pressure(J_minus_one),
-                                                       -this->bulk_tangent(J_minus_one));
+    return sandglass::tangent_bound(*this, H, jacobian_minus_one(H), T(0), T(0));
   }
 
  private:
@@ -138,18 +136,6 @@ struct StVenantKirchhoffOf : QuadraticVolume<StVenantKirchhoffOf<Value>> {
   template <class T>
   static Tensor<T> green_strain(const Tensor<T>& H) {
     return T(0.5) * left_cauchy_green_minus_identity(transpose(H));
-  }
-
-  template <class T>
-  static T green_trace(const Tensor<T>& H) {
-    return trace(H) + T(0.5) * double_dot(H, H);
-  }
-
-  /// tr E - (J - 1) = H:H/2 - tr(cof H) - det H.
-  template <class T>
-  static T excess_dilatation(const Tensor<T>& H, const Tensor<T>& cof_H) {
-    const T det_H = H(0, 0) * cof_H(0, 0) + H(0, 1) * cof_H(0, 1) + H(0, 2) * cof_H(0, 2);
-    return T(0.5) * double_dot(H, H) - (trace(cof_H) + det_H);
   }
 };
 

@@ -13,6 +13,19 @@ constexpr T jacobian_minus_one(const Tensor<T>& H) {
   return trace(H) + (second_invariant + determinant(H));
 }
 
+/// tr E of the Green strain E = (F^T F - I)/2.
+template <class T>
+constexpr T green_trace(const Tensor<T>& H) {
+  return trace(H) + T(0.5) * double_dot(H, H);
+}
+
+/// tr E - (J - 1) = H:H/2 - tr(cof H) - det H, of second order in H.
+template <class T>
+constexpr T excess_dilatation(const Tensor<T>& H, const Tensor<T>& cof_H) {
+  const T det_H = H(0, 0) * cof_H(0, 0) + H(0, 1) * cof_H(0, 1) + H(0, 2) * cof_H(0, 2);
+  return T(0.5) * double_dot(H, H) - (trace(cof_H) + det_H);
+}
+
 /// The volume change at a point: J - 1, and J^(-1/3), by which isochoric laws scale F. The root is a long
 /// chain of dependent operations; if computed early, it is ready when the stress needs it.
 template <class T>
