@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <numeric>
 
 #include "sandglass/simulation.hpp"
 #include "solve/central_difference.hpp"
@@ -97,33 +98,34 @@ TEST(SurfacePair, passes_the_patch_test) {
   }
 }
 
-/// Hertz: two equal spheres of R = 2 m, of different meshes, E* = 7.5e6 Pa: with the force F they touch up to
-/// a = (3 F R / (8 E*))^(1/3), about four elements here, with the pressure p0 = 3 F / (2 pi a^2) in the
-/// middle. Half-spaces pressed by d = 0.01 m would have F = 1e4 N; at the ends of these bodies, 25 a away,
-/// they would still move by 3 % of d, which is 5 % of F.
+/// Hertz: two equal spheres of R = 2 m, of different meshes, E* = 7.5e6 Pa, pressed by d = 0.01 m: a = 0.1 m,
+/// five elements here, F = 1e4 N, and in the middle p0 = 3 F / (2 pi a^2). The bodies are 100 a wide and
+/// high: half-spaces would move by 1 % of d at their ends. The forces at both ends and between them are the
+/// same when the motion is over.
 TEST(SurfacePair, meets_the_closed_form_of_two_spheres) {
-  const double R = 2.0, E = 1.40625e7, modulus = 7.5e6, size = 2.5, d = 0.01;
-  const auto sphere = [&](int n, double side) {
-    const auto graded = [&](double s) { return size * std::sinh(4.5 * s) / std::sinh(4.5); };
-    return lattice({n, n, n}, [&](const Vector& s) {
+  const double R = 2.0, E = 1.40625e7, size = 10.0, d = 0.01, a = 0.1, F = 1e4,
+               p0 = 1.5 * F / (std::numbers::pi * a * a), grade = 6.0;
+  const auto graded = [&](double s) { return size * std::sinh(grade * s) / std::sinh(grade); };
+  const auto sphere = [&](int edges, double side) {
+    return lattice({edges, edges, edges}, [&](const Vector& s) {
       const double x = graded(s[0]), y = graded(s[1]), depth = graded(side > 0.0 ? s[2] : 1.0 - s[2]),
-                   r = std::min(std::hypot(x, y), size);
-      return Vector{x, y, side * (depth + 0.5 * r * r / R * (1.0 - depth / size))};
+                   bulge = 0.5 / R * std::min(x * x + y * y, 1.0);
+      return Vector{x, y, side * (depth + bulge * (1.0 - depth / size))};
     });
   };
-  Mesh lower = sphere(12, -1.0), upper = sphere(10, 1.0);
+  const int n = 16, m = 14;
+  Mesh lower = sphere(n, -1.0), upper = sphere(m, 1.0);
   const auto first = static_cast<int>(lower.points.size());
   TwoBodies balls(std::move(lower), std::move(upper), NeoHookean{.young_modulus = E, .poisson_ratio = 0.25},
                   E);
   const auto& points = balls.mesh.points;
-  const auto surface = [&](int n, double s) {  // of a lattice whose third coordinate is s
-    std::vector<int> nodes;
-    for (int k = 0; k < (n + 1) * (n + 1); ++k)
-      nodes.push_back(s > 0.0 ? first + k : n * (n + 1) * (n + 1) + k);
+  const auto layer = [](int begin, int edges) {
+    std::vector<int> nodes(at((edges + 1) * (edges + 1)));
+    std::iota(nodes.begin(), nodes.end(), begin);
     return nodes;
   };
-  balls.sets["below"] = surface(12, -1.0);
-  balls.sets["above"] = surface(10, 1.0);
+  balls.sets["below"] = layer(n * (n + 1) * (n + 1), n);
+  balls.sets["above"] = layer(first, m);
   balls.sets["left"] = plane(points, 0, 0.0);
   balls.sets["front"] = plane(points, 1, 0.0);
   Case& c = balls.description;
@@ -131,22 +133,36 @@ TEST(SurfacePair, meets_the_closed_form_of_two_spheres) {
                      {"top", {0.0, 0.0, -d}},
                      {"left", {}, {true, false, false}},
                      {"front", {}, {false, true, false}}};
-  c.forces.of<Contact>() = {pair_of("below", "above", Contact::Method::penalty)};
-  c.dynamics.duration = 10.0;
-  c.dynamics.ramp_time = 4.0;
-  c.dynamics.damping = 1.5;
+  c.forces.of<Contact>() = {pair_of("below", "above", Contact::Method::kinematic)};
+  c.dynamics.duration = 160.0;
+  c.dynamics.ramp_time = 64.0;
+  c.dynamics.damping = 0.2;
   const Scene scene = balls.scene();
-  const Model model(scene, {"linear"});
+  const Model model(scene, {"tl-enhanced"});
   Recorder recorder;
   const Motion motion = integrate(model, recorder);
-  const Pressed ball(
-      model, motion.u, scene.sets.at("below"), [](const Vector& X) { return std::hypot(X[0], X[1]); }, 0.2);
-  const double F = 4.0 * ball.force, a = std::cbrt(3.0 * F * R / (8.0 * modulus)),
-               p0 = 1.5 * F / (std::numbers::pi * a * a);
-  EXPECT_NEAR(F, 1e4, 0.05 * 1e4);
+  const auto& reactions = recorder.rows.back().reactions;
+  EXPECT_NEAR(4.0 * reactions.at("foot")[2], F, 0.01 * F);
+  EXPECT_NEAR(4.0 * reactions.at("pair")[2], -F, 0.01 * F);
+  EXPECT_NEAR(4.0 * reactions.at("top")[2], -F, 0.01 * F);
+  const auto radius = [](const Vector& X) { return std::hypot(X[0], X[1]); };
+  const auto& surface = scene.sets.at("below");
+  const Pressed ball(model, motion.u, surface, radius, 2.0 * a);
+  EXPECT_NEAR(4.0 * ball.force, F, 0.01 * F);
   EXPECT_NEAR(std::sqrt(2.5 * ball.square_arm), a, 0.02 * a);
-  const double h = size * std::sinh(4.5 / 12) / std::sinh(4.5);
-  EXPECT_NEAR(ball.middle / (0.25 * h * h), p0, 0.03 * p0);
+  const Pressed middle(model, motion.u, surface, radius, a / 2.0);
+  double expected = 0.0;  // of p0 (1 - r^2/a^2)^(1/2) at the nodes
+  for (const int node : surface) {
+    const Vector& X = points[at(node)];
+    if (radius(X) > a / 2.0) continue;
+    double area = 1.0;
+    for (const double x : {X[0], X[1]}) {
+      const double s = std::asinh(x / size * std::sinh(grade)) / grade;
+      area *= 0.5 * (graded(s + 1.0 / n) - (x > 0.0 ? graded(s - 1.0 / n) : 0.0));
+    }
+    expected += area * p0 * std::sqrt(1.0 - radius(X) * radius(X) / (a * a));
+  }
+  EXPECT_NEAR(middle.force, expected, 0.03 * expected);
 }
 
 /// The upper wedge of CGS-4 on the lower one, with `slope` and the given contact; it is pushed uphill.

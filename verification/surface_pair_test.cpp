@@ -148,6 +148,23 @@ TEST(SurfacePair, stops_a_slab_by_friction) {
   }
 }
 
+/// Friction that ends while the slab has half of its speed leaves it that.
+TEST(SurfacePair, rubs_as_long_as_its_curve_says) {
+  for (const auto method : both_methods) {
+    const double speed = 2.0, time = speed / (coefficient * gravity);
+    TwoBodies bodies = slab(method, 0.0, speed, time);
+    bodies.description.forces.of<Contact>().front().curve = {{0.5 * time, 0.5 * time + 1e-6}, {1.0, 0.0}};
+    const Scene scene = bodies.scene();
+    const Model model(scene, {"tl-perturbation"});
+    Recorder recorder;
+    const Motion motion = integrate(model, recorder);
+    const double left = centre_of(bodies.sets.at("upper"), motion.v, model.masses())[0];
+    EXPECT_NEAR(left, 0.5 * speed, 0.03 * speed);
+    const double rubbed = coefficient * 200.0 * gravity;  // a deformed interface is not quite level
+    EXPECT_NEAR(recorder.rows.back().reactions.at("pair")[0], 0.0, 0.01 * rubbed);
+  }
+}
+
 /// Below the coefficient of friction the slab sticks: once vibrations are damped it does not creep. By the
 /// kinematic method it creeps by a hundredth of a percent of its length in two seconds, as points share its
 /// weight differently in every step, by up to 1 % of it in sum.

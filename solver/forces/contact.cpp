@@ -40,8 +40,11 @@ void Contact::resolve(ForceResolver& resolver) const {
     }
   }
   const ContactScale scale(resolver, all);
-  auto pair = make_surface_pair(*this, {surfaces, scale.stiffness(penalty), scale.edge}, resolver.points,
-                                resolver.cells);
+  const bool is_constant = curve == LoadCurve{};
+  const std::size_t of_friction =
+      resolver.number_of(is_constant ? LoadCurve{.times = {0.0}, .factors = {1.0}} : curve);
+  auto pair = make_surface_pair(*this, {surfaces, scale.stiffness(penalty), scale.edge, of_friction},
+                                resolver.points, resolver.cells);
   if (const auto deepest = pair->deepest_at_start(); deepest && deepest->depth > scale.rounding()) {
     refuse_at(deepest->node,
               fmt::format("is {:.3g} m inside of what it may touch at the start", deepest->depth),

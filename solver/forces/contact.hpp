@@ -26,6 +26,7 @@ struct Contact {
   std::string set;
   std::string other;      ///< empty: the surface touches itself
   double friction = 0.0;  ///< Coulomb's coefficient
+  LoadCurve curve = {};   ///< of the friction; without one it is constant
   double penalty = 1.0;   ///< see parameters
   Method method = Method::kinematic;
 
@@ -38,6 +39,8 @@ struct Contact {
         Parameter{&C::other, "other", "-", Range::any(),
                   "node set of the second surface; without it, the first may touch itself", false},
         Parameter{&C::friction, "friction", "-", Range::at_least(0.0), "Coulomb's coefficient", false},
+        Parameter{&C::curve, "curve", "-", Range::any(),
+                  "factor of the friction over time; without it, friction is constant", false},
         Parameter{&C::penalty, "penalty", "-", Range::positive(),
                   "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of "
                   "the elements at both surfaces",

@@ -22,9 +22,10 @@ class KinematicPair final : public SurfacePair {
 
   bool moves_nodes() const override { return true; }
 
-  void push_out(Factors /*factors*/, const NodalPush& nodes) const override {
+  void push_out(Factors factors, const NodalPush& nodes) const override {
     ContactMemory memory(nodes.memory);
     memory.pushes = memory.moves = {};
+    const double friction_now = friction(factors);
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
       for (std::size_t n = 0; n < surfaces_[s].nodes().size(); ++n) of_nodes(memory, s)[2 * n + 1] = {};
     }
@@ -53,8 +54,8 @@ class KinematicPair final : public SurfacePair {
     constexpr int most_sweeps = 20;
     constexpr double resolved = 1e-3;
     for (int sweep = 0; sweep < most_sweeps && deepest > 0.0; ++sweep) {
-      const double largest =
-          for_each_meeting(memory, [&](const Meeting& meeting) { return separate(meeting, nodes); });
+      const double largest = for_each_meeting(
+          memory, [&](const Meeting& meeting) { return separate(meeting, friction_now, nodes); });
       if (largest < resolved * deepest) break;
     }
     for_each_meeting(memory, [&](const Meeting& meeting) {
@@ -207,7 +208,7 @@ class KinematicPair final : public SurfacePair {
   }
 
   /// Changes the impulse of a point so that it is on the face. Returns by how much it moves, m.
-  double separate(const Meeting& meeting, const NodalPush& nodes) const {
+  double separate(const Meeting& meeting, double friction, const NodalPush& nodes) const {
     const Vector n = meeting.direction(), end = meeting.direction_at_end();
     Vector apart{}, motion{};
     double along_n = 0.0, mobility = 0.0;  // 1/kg, of an impulse along n, and in the mean
@@ -231,7 +232,7 @@ class KinematicPair final : public SurfacePair {
     if (contact_.friction > 0.0) {
       const Vector old{meeting.along[0], meeting.along[1], meeting.along[2]};
       Vector held = sum(old, -1.0 / mobility, sum(motion, -dot(motion, n), n));
-      const double size = std::sqrt(dot(held, held)), most = contact_.friction * impulse;
+      const double size = std::sqrt(dot(held, held)), most = friction * impulse;
       if (size > most) held = sum({}, most / size, held);
       change = sum(change, 1.0, difference(held, old));
       meeting.along = {{held[0], held[1], held[2]}};

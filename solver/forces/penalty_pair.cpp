@@ -16,10 +16,11 @@ class PenaltyPair final : public SurfacePair {
               std::span<const Hexahedron> cells)
       : SurfacePair(contact, std::move(given), points, cells, contact.friction > 0.0 ? 4 : 2, 0) {}
 
-  void add_contact(Factors /*factors*/, NodalRows u, Row<double>* rows,
+  void add_contact(Factors factors, NodalRows u, Row<double>* rows,
                    AtNodes<Row<double>> forces) const override {
     ContactMemory memory(rows);
     memory.pushes = memory.moves = {};
+    const double friction_now = friction(factors);
     const auto use = [&](const Side& side, std::size_t k, const Vector& x, const SurfaceFoot& foot) {
       const MovingSurface &from = surfaces_[side.from], &onto = surfaces_[side.onto];
       const SurfacePoint& point = from.points()[k];
@@ -28,9 +29,9 @@ class PenaltyPair final : public SurfacePair {
       memory.moves[3] = std::max(memory.moves[3], foot.distance());
       Row<double>* remembered = of_point(memory, side, k);
       const double pushes = share_of_depth(foot.distance(), stiffness, remembered, memory);
-      const Row<double> anchor = contact_.friction > 0.0
-                                     ? hold(x, foot, pushes * stiffness, remembered, of_onto, memory, onto)
-                                     : foot.weights;
+      const Row<double> anchor = contact_.friction > 0.0 ? hold(x, foot, friction_now, pushes * stiffness,
+                                                                remembered, of_onto, memory, onto)
+                                                         : foot.weights;
       remembered[0][strength] = stiffness;
       const Quadrilateral& corners = onto.corners(foot.face);
       const Vector pull = sum({}, pushes, difference(MovingSurface::position(corners, anchor, of_onto), x));
@@ -90,8 +91,9 @@ class PenaltyPair final : public SurfacePair {
   }
 
   /// The weights of the point of the face to which the spring of a point pulls.
-  Row<double> hold(const Vector& x, const SurfaceFoot& foot, double stiffness, Row<double>* remembered,
-                   const Row<double>* onto, ContactMemory& memory, const MovingSurface& surface) const {
+  Row<double> hold(const Vector& x, const SurfaceFoot& foot, double friction, double stiffness,
+                   Row<double>* remembered, const Row<double>* onto, ContactMemory& memory,
+                   const MovingSurface& surface) const {
     Row<double>&anchor = remembered[2], &stretch = remembered[3];
     Vector along{};
     if (remembered[0][strength] > 0.0) {
@@ -106,7 +108,7 @@ class PenaltyPair final : public SurfacePair {
     } else {
       stretch = {};
     }
-    memory.sums[0] += stiffness * slip(along, contact_.friction * foot.distance(), stretch);
+    memory.sums[0] += stiffness * slip(along, friction * foot.distance(), stretch);
     stretch = {{along[0], along[1], along[2]}};
     anchor = surface.weights_at(foot, difference(foot.x, along), onto);
     return anchor;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -14,6 +15,7 @@ struct SurfacesOfPair {
   std::vector<std::vector<Quadrilateral>> faces;  ///< of one or two surfaces
   double stiffness;                               ///< of a penalty: pressure over depth, Pa/m
   double reach;                                   ///< the largest depth that is followed, m
+  std::size_t friction_curve;                     ///< number of the curve with the factor of the friction
 };
 
 /// Points of a surface against faces of the other, and the other way round, or of a surface against its own
@@ -70,6 +72,11 @@ class SurfacePair : public ContactForce {
   Row<double>* of_surface(ContactMemory& memory, std::size_t s) const { return memory.others + rows_of_[s]; }
   Row<double>* of_nodes(ContactMemory& memory, std::size_t s) const {
     return of_surface(memory, s) + surfaces_[s].rows();
+  }
+
+  /// Coulomb's coefficient now.
+  double friction(Factors factors) const {
+    return std::max(0.0, contact_.friction * factors[given_.friction_curve]);
   }
 
   /// Calls use(side, k, x, foot) for all points k at x (m) that touch at displacements u (m), and

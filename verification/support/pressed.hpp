@@ -14,11 +14,7 @@ struct Pressed {
   /// within a distance (m).
   Pressed(const Model& model, const NodalField& u, const std::vector<int>& surface,
           const std::function<double(const Vector&)>& distance, double within) {
-    const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
-    Rows<double> rows(elements.layout().rows());
-    State<double> state = state_at(elements, u);
-    elements.evaluate(state, rows);
-    const NodalField forces = to_field(rows, elements.layout());
+    const NodalField forces = internal_forces(model, u);
     double nearest = INFINITY;
     for (const int node : surface) {
       const double r = distance(model.scene().mesh.points[at(node)]), f = -forces[at(node)][2];
