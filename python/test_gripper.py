@@ -1,0 +1,66 @@
+"""Two jaws lift a soft block by friction, or let it slip."""
+
+import numpy as np
+import pytest
+
+import sandglass as sg
+
+EDGE, DENSITY, GRAVITY = 0.04, 1000.0, 9.81  # m, kg/m^3, m/s^2
+WEIGHT = EDGE**3 * DENSITY * GRAVITY
+FRICTION = 0.5
+
+
+def gripped_block(method, n=6):
+    """The block on a floor between jaws that just touch it, under its weight."""
+    z, y, x = np.meshgrid(*[np.linspace(0, EDGE, n + 1)] * 3, indexing="ij")
+    points = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    node = np.arange((n + 1) ** 3).reshape([n + 1] * 3)
+    square = [(0, 0), (0, 1), (1, 1), (1, 0)]  # (y, x) of corners
+    corners = [node[c : n + c, b : n + b, a : n + a].ravel() for c in (0, 1) for b, a in square]
+    sets = {"west": node[:, :, 0].ravel(), "east": node[:, :, n].ravel(), "foot": node[0].ravel()}
+    jaw = {"shape": "plane", "friction": FRICTION, "method": method}
+    loads = [
+        sg.Obstacle(name="floor", set="foot", shape="plane", normal=(0, 0, 1), method=method),
+        sg.Obstacle(name="left", set="west", normal=(1, 0, 0), **jaw),
+        sg.Obstacle(name="right", set="east", point=(EDGE, 0, 0), normal=(-1, 0, 0), **jaw),
+        sg.Gravity(value=(0, 0, -GRAVITY), times=[0], factors=[1]),
+        sg.Dynamics(duration=1.0, damping=20.0),
+    ]
+    law = sg.NeoHookean(young_modulus=3000.0, poisson_ratio=0.45, density=DENSITY)
+    mesh = sg.Mesh(points, np.stack(corners, axis=-1), sets)
+    return sg.Body(mesh, law, loads).simulation(method="tl-perturbation")
+
+
+def pinched_and_lifted(method, squeeze, lift=0.02):
+    """The block after each jaw moved by `squeeze` (m) onto it and both rose by `lift` (m)."""
+    block = gripped_block(method)
+    block.advance(0.5)
+    for height, seconds in (0.0, 0.5), (0.0, 0.5), (lift, 1.0), (lift, 1.0):
+        block.move("left", (squeeze, 0, height))
+        block.move("right", (-squeeze, 0, height))
+        block.advance(seconds)
+    return block
+
+
+@pytest.mark.parametrize("method", ["kinematic", "penalty"])
+def test_jaws_lift_what_friction_holds(method):
+    """It hangs from the jaws with all of its weight, and does not creep in two seconds."""
+    block = pinched_and_lifted(method, squeeze=0.004)
+    left, right = (np.array(block.reaction(name)) for name in ("left", "right"))
+    assert block.reaction("floor") == pytest.approx((0, 0, 0), abs=1e-9 * WEIGHT)
+    assert left + right == pytest.approx([0, 0, WEIGHT], abs=1e-3 * WEIGHT)
+    assert np.hypot(*left[1:]) < FRICTION * left[0]
+    before = block.displacements.copy()
+    assert before[:, 2].min() > 0
+    block.advance(2.0)
+    assert np.abs(block.displacements - before).max() < 1e-6 * EDGE
+
+
+@pytest.mark.parametrize("method", ["kinematic", "penalty"])
+def test_jaws_slip_on_what_is_too_heavy(method):
+    """They carry what friction can, and the floor the rest."""
+    block = pinched_and_lifted(method, squeeze=0.0005)
+    left, right = (np.array(block.reaction(name)) for name in ("left", "right"))
+    carried, floor = (left + right)[2], block.reaction("floor")[2]
+    assert 0.2 * WEIGHT < carried <= FRICTION * (left[0] - right[0]) * (1 + 1e-9)
+    assert carried + floor == pytest.approx(WEIGHT, rel=1e-3)
