@@ -72,11 +72,12 @@ TEST(SurfacePair, has_the_forces_of_its_energy) {
   std::iota(places.begin(), places.end(), 0);
   RandomGeometry random(5);
   Rows<double> u(places.size()), forces(places.size());
+  const std::vector<double> factors(scene.curves.size(), 1.0);
   for (const int node : scene.sets.at("over"))
     u[at(node)] = {{random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), random.uniform(-0.06, 0.0)}};
   const auto energy = [&](AtNodes<Row<double>> sums) {
     std::vector<Row<double>> memory(contact->memory());
-    contact->add_contact({}, NodalRows(u.data(), places), memory.data(), sums);
+    contact->add_contact(factors, NodalRows(u.data(), places), memory.data(), sums);
     return contact->touch(memory.data()).stored;
   };
   EXPECT_GT(energy({forces.data(), places}), 0.0);
