@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "base/error.hpp"
 #include "solve/central_difference.hpp"
 #include "support/two_bodies.hpp"
@@ -62,6 +64,25 @@ TEST(ContactLimits, refuses_bodies_that_overlap) {
     });
     EXPECT_EQ(message(hollow, moved(box({0.6, 0.6, 0.6}, {3, 3, 3}), {0.2, 0.2, 0.2}), all), "");
   }
+}
+
+/// A ring that does not close, and one whose ends are within it.
+TEST(ContactLimits, refuses_a_body_that_overlaps_itself) {
+  const auto message = [](double turns) {
+    Mesh ring = lattice({40, 2, 2}, [&](const Vector& s) {
+      const double angle = 2.0 * std::numbers::pi * turns * s[0], r = 1.0 - 0.2 * s[1];
+      return Vector{r * std::cos(angle), r * std::sin(angle), 0.2 * s[2]};
+    });
+    Case c = plain_case(law());
+    c.quasi_static = false;
+    c.forces.of<Contact>() = {{.label = "ring", .set = "ends"}};
+    NodeSets sets;
+    for (int node = 0; at(node) < ring.points.size(); ++node)
+      if (node % 41 == 0 || node % 41 == 40) sets["ends"].push_back(node);
+    return message_of<InputError>([&] { make_scene(c, std::move(ring), std::move(sets)); });
+  };
+  EXPECT_EQ(message(0.9), "");
+  expect_in(message(1.1), "is within the body itself at the start; allowed: bodies that do not intersect");
 }
 
 /// No node is within a tool that is wholly within the body.

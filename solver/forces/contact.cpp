@@ -50,9 +50,13 @@ void Contact::resolve(ForceResolver& resolver) const {
               fmt::format("is {:.3g} m inside of what it may touch at the start", deepest->depth),
               "surfaces that do not intersect");
   }
-  for (std::size_t s = 0; s < surfaces.size() && surfaces.size() > 1; ++s) {  // deeper than the pair follows
-    const int node = node_within_other_body(resolver, surfaces[s], surfaces[1 - s]);
-    if (node >= 0) refuse_at(node, "is within the other body at the start", "bodies that do not intersect");
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {  // deeper than the pair follows
+    const int node = node_within_body(resolver, surfaces[s], surfaces[surfaces.size() - 1 - s]);
+    if (node < 0) continue;
+    refuse_at(node,
+              surfaces.size() > 1 ? "is within the other body at the start"
+                                  : "is within the body itself at the start",
+              "bodies that do not intersect");
   }
   resolver.forces.push_back(std::move(pair));
 }

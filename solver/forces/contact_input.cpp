@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "forces/contact_force.hpp"
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/edges.hpp"
+#include "mesh/interpolation.hpp"
 
 namespace sandglass {
 
@@ -37,46 +38,31 @@ double winding_number(const Vector& x, const std::vector<Quadrilateral>& faces, 
   return angle / (4.0 * std::numbers::pi);
 }
 
-int node_within_other_body(const ForceResolver& resolver, const std::vector<Quadrilateral>& surface,
-                           const std::vector<Quadrilateral>& other) {
-  std::vector<int> body(resolver.points.size());  // of nodes, by one of its nodes
-  std::iota(body.begin(), body.end(), 0);
-  const auto body_of = [&](int node) {
-    while (body[at(node)] != node) node = body[at(node)] = body[at(body[at(node)])];
-    return node;
-  };
+int node_within_body(const ForceResolver& resolver, const std::vector<Quadrilateral>& surface,
+                     const std::vector<Quadrilateral>& other) {
+  DisjointSets bodies(resolver.points.size());
   for (const Hexahedron& cell : resolver.cells) {
-    for (const int node : cell) body[at(body_of(node))] = body_of(cell[0]);
+    for (const int node : cell) bodies.join(cell[0], node);
   }
-  std::vector<bool> is_other(resolver.points.size(), false);
-  for (const int node : nodes_of(other)) is_other[at(body_of(node))] = true;
-  for (const int node : nodes_of(surface)) is_other[at(body_of(node))] = false;
-  std::vector<Quadrilateral> faces;
-  Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-  for (const Quadrilateral& face : resolver.boundary) {
-    if (!is_other[at(body_of(face[0]))]) continue;
-    faces.push_back(face);
-    for (const int node : face) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        low[i] = std::min(low[i], resolver.points[at(node)][i]);
-        high[i] = std::max(high[i], resolver.points[at(node)][i]);
-      }
-    }
-  }
-  std::vector<bool> on_surface(resolver.points.size(), false);
-  for (const int node : nodes_of(surface)) on_surface[at(node)] = true;
-  for (const Hexahedron& cell : resolver.cells) {
-    const Vector middle = mean_at(cell, resolver.points);
-    for (const int node : cell) {
-      if (!on_surface[at(node)]) continue;
-      on_surface[at(node)] = false;
+  std::vector<bool> has_other(resolver.points.size(), false), remains(resolver.points.size(), false);
+  for (const int node : nodes_of(other)) has_other[at(bodies.least(node))] = true;
+  for (const int node : nodes_of(surface)) remains[at(node)] = true;
+  std::vector<PointWithin> within;
+  for (std::size_t e = 0; e < resolver.cells.size(); ++e) {
+    const Vector middle = mean_at(resolver.cells[e], resolver.points);
+    for (const int node : resolver.cells[e]) {
+      if (!remains[at(node)]) continue;
+      remains[at(node)] = false;
       constexpr double inwards = 1e-3;
       const Vector& X = resolver.points[at(node)];
-      const Vector x = sum(X, inwards, difference(middle, X));
-      bool near = true;
-      for (std::size_t i = 0; i < 3; ++i) near = near && x[i] > low[i] && x[i] < high[i];
-      if (near && winding_number(x, faces, resolver.points) > 0.5) return node;
+      within.push_back({e, sum(X, inwards, difference(middle, X))});
     }
+  }
+  for (const auto& [point, element] : overlaps(resolver.points, resolver.cells, within)) {
+    if (!has_other[at(bodies.least(resolver.cells[element][0]))]) continue;
+    return *std::ranges::min_element(resolver.cells[point.element], {}, [&, at_point = point.X](int node) {
+      return distance(resolver.points[at(node)], at_point);
+    });
   }
   return -1;
 }

@@ -24,10 +24,10 @@ struct ContactScale {
 /// solid angles of triangles over 4 pi (Van Oosterom and Strackee 1983).
 double winding_number(const Vector& x, const std::vector<Quadrilateral>& faces, const NodalField& points);
 
-/// A node of a surface that lies within a body to which it does not belong, and which has faces of the other
-/// surface; -1: none. Nodes are taken just within their own body, so that bodies may touch.
-int node_within_other_body(const ForceResolver& resolver, const std::vector<Quadrilateral>& surface,
-                           const std::vector<Quadrilateral>& other);
+/// A node of a surface that lies within a body with faces of the other surface, which may be its own; -1:
+/// none. Nodes are taken just within their own elements, so that bodies may touch.
+int node_within_body(const ForceResolver& resolver, const std::vector<Quadrilateral>& surface,
+                     const std::vector<Quadrilateral>& other);
 
 /// Throws InputError unless a contact can be reported under a name (`label`) of its own.
 void require_own_name(const ForceResolver& resolver, std::string_view table, const std::string& label);

@@ -58,15 +58,16 @@ std::optional<Vector> parent_point(NodalVectors<double> nodes, const Vector& X) 
 /// Elements sorted into the boxes of a grid over the mesh, by the boxes that their bounding boxes touch.
 class ElementGrid {
  public:
-  explicit ElementGrid(const Mesh& mesh) : mesh_(mesh), low_(bounding_box(mesh.points)[0]) {
-    const Vector high = bounding_box(mesh.points)[1];
+  ElementGrid(const NodalField& points, std::span<const Hexahedron> cells)
+      : points_(points), cells_(cells), low_(bounding_box(points)[0]) {
+    const Vector high = bounding_box(points)[1];
     const double volume = (high[0] - low_[0]) * (high[1] - low_[1]) * (high[2] - low_[2]);
-    spacing_ = std::cbrt(volume / static_cast<double>(mesh.cells.size()));
+    spacing_ = std::cbrt(volume / static_cast<double>(cells.size()));
     for (std::size_t i = 0; i < 3; ++i) {
       counts_[i] = std::max(1, static_cast<int>(std::ceil((high[i] - low_[i]) / spacing_)));
     }
     bins_.resize(at(counts_[0]) * at(counts_[1]) * at(counts_[2]));
-    for (std::size_t e = 0; e < mesh.cells.size(); ++e) enter(e);
+    for (std::size_t e = 0; e < cells.size(); ++e) enter(e);
   }
 
   /// Elements that may contain a point, or are close to it.
@@ -76,7 +77,7 @@ class ElementGrid {
 
  private:
   void enter(std::size_t e) {
-    auto [low, high] = bounding_box(values_at(mesh_.cells[e], mesh_.points));
+    auto [low, high] = bounding_box(values_at(cells_[e], points_));
     for (std::size_t i = 0; i < 3; ++i) {  // points outside the mesh lie within half an element of it
       const double reach = 0.5 * (high[i] - low[i]);
       low[i] -= reach;
@@ -101,7 +102,8 @@ class ElementGrid {
     return n;
   }
 
-  const Mesh& mesh_;
+  const NodalField& points_;
+  std::span<const Hexahedron> cells_;
   Vector low_;
   double spacing_ = 0.0;
   std::array<int, 3> counts_{};
@@ -111,7 +113,7 @@ class ElementGrid {
 }  // namespace
 
 std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& points) {
-  const ElementGrid grid(mesh);
+  const ElementGrid grid(mesh.points, mesh.cells);
   std::vector<std::size_t> everywhere(mesh.cells.size());
   std::iota(everywhere.begin(), everywhere.end(), 0U);
   std::vector<ElementPoint> places;
@@ -146,6 +148,23 @@ NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalFie
   for (const auto& [element, parent] : element_points(mesh, points))
     values.push_back(trilinear(gather(field, mesh.cells[element]), parent));
   return values;
+}
+
+std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& points,
+                                                          std::span<const Hexahedron> cells,
+                                                          const std::vector<PointWithin>& some) {
+  const ElementGrid grid(points, cells);
+  std::vector<std::pair<PointWithin, std::size_t>> found;
+  for (const PointWithin& one : some) {
+    for (const std::size_t e : grid.near(one.X)) {
+      const auto [low, high] = bounding_box(values_at(cells[e], points));
+      const auto beyond = [&](std::size_t i) { return one.X[i] < low[i] || one.X[i] > high[i]; };
+      if (e == one.element || beyond(0) || beyond(1) || beyond(2)) continue;
+      const auto xi = parent_point(gather(points, cells[e]), one.X);
+      if (xi && parent_distance(*xi) < 1.0) found.emplace_back(one, e);
+    }
+  }
+  return found;
 }
 
 }  // namespace sandglass

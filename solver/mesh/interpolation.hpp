@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <utility>
+
 #include "mesh/mesh.hpp"
 
 namespace sandglass {
@@ -21,5 +24,16 @@ std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& poi
 /// point. For a point outside the mesh, as on the curved boundary of a finer one, the field is extrapolated
 /// from the closest element in parent coordinates. Throws InputError for a point that is far from the mesh.
 NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalField& points);
+
+/// A point (m) just within an element.
+struct PointWithin {
+  std::size_t element;
+  Vector X;
+};
+
+/// The points that are also within other elements, with each of these: there the mesh overlaps itself.
+std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& points,
+                                                          std::span<const Hexahedron> cells,
+                                                          const std::vector<PointWithin>& some);
 
 }  // namespace sandglass
