@@ -17,12 +17,13 @@ namespace {
 /// Two equal bars collide (FrontISTR's tworods), with meshes that do not match: the stress rho c v acts from
 /// the time gap / 2v on for 2 L / c, then their velocities are exchanged. The scheme rings, so that means
 /// count, and what rings is not returned: a percent of the impulse. The kinematic method takes the share of
-/// the kinetic energy that is in the nodes that meet, an eightieth. Energy never grows.
+/// the kinetic energy that is in the nodes that meet, a 120th: with 40 elements in a row its impulse errs by
+/// 1.24 %. Energy never grows.
 TEST(SurfacePair, lets_bars_exchange_their_velocities) {
   const double L = 20.0, gap = 0.4, E = 1000.0, rho = 0.1, v = 1.0, c = std::sqrt(E / rho),
                stress = rho * c * v, touch = 0.5 * gap / v, release = touch + 2.0 * L / c, mass = rho * L;
   for (const auto method : both_methods) {
-    TwoBodies bars(box({1.0, 1.0, L}, {2, 2, 40}), moved(box({1.0, 1.0, L}, {3, 3, 40}), {0.0, 0.0, L + gap}),
+    TwoBodies bars(box({1.0, 1.0, L}, {2, 2, 60}), moved(box({1.0, 1.0, L}, {3, 3, 60}), {0.0, 0.0, L + gap}),
                    NeoHookean{.young_modulus = E, .poisson_ratio = 0.0}, rho);
     bars.description.forces.of<Contact>() = {pair_of("under", "over", method)};
     bars.description.velocities = {{.set = "lower", .value = {0.0, 0.0, v}},
@@ -49,11 +50,11 @@ TEST(SurfacePair, lets_bars_exchange_their_velocities) {
       time += step;
     }
     EXPECT_NEAR(plateau / time, stress, 0.01 * stress);
-    EXPECT_NEAR(impulse, 2.0 * mass * v, 0.015 * 2.0 * mass * v);
-    EXPECT_LT(recorder.rows.back().friction, 1.1 / 80.0 * energy);
+    EXPECT_NEAR(impulse, 2.0 * mass * v, 0.01 * 2.0 * mass * v);
+    EXPECT_LT(recorder.rows.back().friction, 1.1 / 120.0 * energy);
     double momentum = 0.0;
     for (const int node : bars.sets.at("lower")) momentum += model.masses()[at(node)] * motion.v[at(node)][2];
-    EXPECT_NEAR(momentum, -mass * v, 0.03 * mass * v);
+    EXPECT_NEAR(momentum, -mass * v, 0.02 * mass * v);
   }
 }
 
