@@ -32,6 +32,7 @@ struct Dialect {
   std::string_view results;         ///< the same, which it sets
   std::string_view indices;         ///< the same of integers, which it reads
   std::string_view between = ", ";  ///< two of them
+  std::string_view integer = "int {name}";  ///< the same of one integer; empty: no kernels of nodes
   std::string_view kernel;          ///< from the head of the kernel to the loop over elements e
   bool keeps_sums = true;           ///< whether its compilers keep the order of sums
   std::string_view entry = "{name}[{k} * count + e]";  ///< number k of element e in an array
