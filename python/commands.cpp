@@ -172,7 +172,7 @@ std::string count_operations(const Arguments& /*given*/, Watch& watch) {
 std::string write_kernel(const Arguments& given, Watch& watch) {
   const KernelRequest request{given.text("method"), given.text("dialect"),
                               given.optional("precision", &Arguments::text).value_or(""),
-                              given.optional("material", &Arguments::integer)};
+                              given.optional("material", &Arguments::integer), given.flag("step")};
   const std::string of = given.text("case");
   return watch.run([&] { return Json(kernel_source(request, find_case(of), build_provenance())).dump(); });
 }

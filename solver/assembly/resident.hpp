@@ -54,6 +54,12 @@ struct ResidentBody {
   std::vector<Real> works_of_loads;  ///< J, by row
 };
 
+/// What a step costs there. Each array is counted once, as if caches held what neighbours share.
+struct StepTraffic {
+  int launches = 0;
+  std::size_t bytes = 0;
+};
+
 /// The state of a body on another processor, which takes steps there.
 template <class Real>
 class ResidentState {
@@ -62,6 +68,8 @@ class ResidentState {
   ResidentState(const ResidentState&) = delete;
   ResidentState& operator=(const ResidentState&) = delete;
   virtual ~ResidentState() = default;
+
+  virtual StepTraffic step_traffic() const = 0;
 
   /// Starts from a body; its reactions and works are not used.
   virtual void write(const ResidentBody<Real>& body) = 0;

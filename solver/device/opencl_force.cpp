@@ -108,9 +108,8 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
   const Rows<Real> coordinates = centred_coordinates<Real>(mesh.points, layout);
   const std::size_t results = 3 * Hexahedron{}.size() * order.elements.size() * sizeof(Real);
   device_->require_room(std::array{2 * bytes_, bytes_ + places.size() * sizeof(int),
-                                   order.elements.size() * sizeof(Real),
-                                   constants.size() * sizeof(Real), axes.size() * sizeof(Real),
-                                   slots.size() * sizeof(int), results});
+                                   order.elements.size() * sizeof(Real), constants.size() * sizeof(Real),
+                                   axes.size() * sizeof(Real), slots.size() * sizeof(int), results});
 
   constant_.reserve(4);  // kernels refer to them
   const auto keep = [&]<class Values>(const Values& values) -> const OpenClBuffer& {
@@ -118,10 +117,8 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
   };
   const OpenClBuffer &on_places = keep(places), &on_constants = keep(constants), &on_axes = keep(axes),
                      &on_coordinates = keep(coordinates);
-  nodal_sums_ = std::make_unique<NodalSums>(NodalSums{static_cast<int>(count),
-                                            {*device_, first},
-                                            {*device_, slots},
-                                            {*device_, results}});
+  nodal_sums_ = std::make_unique<NodalSums>(NodalSums{
+      static_cast<int>(count), slots.size(), {*device_, first}, {*device_, slots}, {*device_, results}});
   jacobians_ = std::make_unique<OpenClBuffer>(*device_, order.elements.size() * sizeof(Real));
   const Dialect& dialect = dialect_named("opencl");
   const auto kernel_of = [&](const ForceProgram& program, const OpenClBuffer& result) {
@@ -141,18 +138,23 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
   };
   for (const auto& [material, first_element, number] : order.laws) {
     const AnyLaw& law = materials.list[material].law;
-    forces_.push_back({kernel_of(force_program(choice.method,
-                                               elastic_law(kernel_law(materials.list[material])),
-                                               has_fibres(law)),
-                                 nodal_sums_->f),
-                       first_element, number});
+    forces_.push_back(
+        {kernel_of(
+             force_program(choice.method, elastic_law(kernel_law(materials.list[material])), has_fibres(law)),
+             nodal_sums_->f),
+         first_element, number});
   }
+  const bool reads_coordinates =
+      std::ranges::count(jacobian_program(choice.method).arrays, "X", &KernelArray::name) > 0;
+  traffic_ = {static_cast<int>(order.laws.size()), results + places.size() * sizeof(int) +
+                                                       (constants.size() + axes.size()) * sizeof(Real) +
+                                                       (reads_coordinates ? 2 : 1) * bytes_};
   smallest_jacobians_.push_back(
       {kernel_of(jacobian_program(choice.method), *jacobians_), 0, order.elements.size()});
   sum_ = std::make_unique<OpenClKernel>(
       *device_, node_kernel_text<Real>(node_kernel("sum_at_nodes"), dialect), "sum_at_nodes");
-  sum_->set(static_cast<cl_long>(mesh.points.size()), nodal_sums_->elements, nodal_sums_->first, nodal_sums_->slots,
-            nodal_sums_->f, force_);
+  sum_->set(static_cast<cl_long>(mesh.points.size()), nodal_sums_->elements, nodal_sums_->first,
+            nodal_sums_->slots, nodal_sums_->f, force_);
 }
 
 template <class Real>

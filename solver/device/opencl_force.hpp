@@ -16,8 +16,8 @@ inline std::size_t in_groups(std::size_t count) {
 
 /// Elements whose forces an OpenCL device computes: a kernel for each law computes the forces of elements,
 /// another one adds those at each node, always in the order of the elements, so that bits do not change from
-/// run to run. Displacements are copied to the device at each evaluation, and forces back, unless the state of
-/// a moving body stays there (`resident`).
+/// run to run. Displacements are copied to the device at each evaluation, and forces back, unless the state
+/// of a moving body stays there (`resident`).
 template <class Real>
 class OpenClForce final : public DelegatingForce<Real>, public StateKeeper<Real> {
  public:
@@ -34,10 +34,14 @@ class OpenClForce final : public DelegatingForce<Real>, public StateKeeper<Real>
   /// The forces of elements, and where those on each node are among them; see `move_nodes` in
   /// written/node_kernels.hpp.
   struct NodalSums {
-    int elements;  ///< with those that fill groups
+    int elements;       ///< with those that fill groups
+    std::size_t count;  ///< of slots
     OpenClBuffer first, slots, f;
   };
   const NodalSums& nodal_sums() const { return *nodal_sums_; }
+
+  /// What the forces of elements cost.
+  const StepTraffic& traffic() const { return traffic_; }
 
   /// Queues the computation of the forces of elements, or of their smallest det F, at displacements u.
   void compute_forces(const OpenClBuffer& u) const;
@@ -56,12 +60,13 @@ class OpenClForce final : public DelegatingForce<Real>, public StateKeeper<Real>
   void compute(std::vector<Part>& parts, const OpenClBuffer& u) const;
 
   std::shared_ptr<const OpenClDevice> device_;
-  std::size_t bytes_;                    // of nodal values
-  mutable std::mutex one_evaluation_;    // kernels keep their arguments
-  mutable OpenClBuffer u_, force_;       // of evaluations
-  std::vector<OpenClBuffer> constant_;   // buffers that kernels read
+  std::size_t bytes_;                   // of nodal values
+  mutable std::mutex one_evaluation_;   // kernels keep their arguments
+  mutable OpenClBuffer u_, force_;      // of evaluations
+  std::vector<OpenClBuffer> constant_;  // buffers that kernels read
   std::unique_ptr<NodalSums> nodal_sums_;
   std::unique_ptr<OpenClBuffer> jacobians_;
+  StepTraffic traffic_;
   mutable std::vector<Part> forces_, smallest_jacobians_;
   std::unique_ptr<OpenClKernel> sum_;
   std::size_t sums_;

@@ -69,8 +69,8 @@ struct OpenClState<Real>::Loads {
     const std::size_t one = problem.curves, per_step = problem.curves + 1;
     std::size_t column = 0;
     for (const FaceForces& own : problem.face_forces) {
-      const std::size_t factor = own.motion == FaceForces::Resists::velocities ? per_step
-                                                                               : own.curve.value_or(one);
+      const std::size_t factor =
+          own.motion == FaceForces::Resists::velocities ? per_step : own.curve.value_or(one);
       for (std::size_t k = 0; k < in_groups(own.faces.size()); ++k, ++column) {
         const Quadrilateral& face = own.faces[std::min(k, own.faces.size() - 1)];
         for (std::size_t I = 0; I < 4; ++I) {
@@ -144,10 +144,9 @@ OpenClState<Real>::OpenClState(const OpenClForce<Real>& elements, const NodalPro
     const ForceProgram program{{{"u", 12, "motion of the corners, m", true},
                                 {"constants", static_cast<int>(numbers), "of the face"}},
                                own.program};
-    OpenClKernel kernel(device_,
-                        kernel_text<Real>(program, dialect_named("opencl"), {"of_faces", {}},
-                                          NodalValues::of_nodes),
-                        "of_faces");
+    OpenClKernel kernel(
+        device_, kernel_text<Real>(program, dialect_named("opencl"), {"of_faces", {}}, NodalValues::of_nodes),
+        "of_faces");
     kernel.set(static_cast<cl_long>(all.columns), places,
                own.motion == FaceForces::Resists::velocities ? increment_ : u_, on_device(constants), g);
     faces_.push_back({std::move(kernel), column, count});
@@ -159,7 +158,29 @@ OpenClState<Real>::OpenClState(const OpenClForce<Real>& elements, const NodalPro
             on_device(factors), g, on_device(first_constraint), on_device(components), on_device(angles),
             on_device(shares), on_device(problem.inverse_masses), u_, increment_, force_, load_, load_work_,
             reaction_, driving_, work_);
+  traffic_ = traffic_of(first_load, problem.face_forces);
   find_ill_.set(static_cast<cl_long>(sums.elements), elements.jacobians(), ill_);
+}
+
+/// Of the nodes: where lists begin; forces of elements by slots; inverse mass; u and increment, read and
+/// written; of constraints their lists, shares, driving force and work, and the reaction; of loads their
+/// lists, forces, and the last forces and works of their nodes.
+template <class Real>
+StepTraffic OpenClState<Real>::traffic_of(const std::vector<int>& first_load,
+                                          const std::vector<FaceForces>& faces) const {
+  constexpr std::size_t index = sizeof(int), number = sizeof(Real), row = of_row * number;
+  const auto loads = at(first_load.back()), slots = elements_.nodal_sums().count;
+  std::size_t loaded = 0;
+  for (std::size_t n = 0; n < nodes_; ++n) loaded += first_load[n] < first_load[n + 1] ? 1U : 0U;
+  StepTraffic sum = elements_.traffic();
+  sum.launches += 1 + static_cast<int>(faces.size());
+  sum.bytes += nodes_ * (3 * index + number + 4 * row) + slots * (index + of_corner * number) +
+               by_row_.size() * (2 * index + 9 * number) + loads * (2 * index + of_corner * number) +
+               loaded * (2 * row + 2 * number);
+  for (const FaceForces& own : faces)
+    sum.bytes += in_groups(own.faces.size()) *
+                 (4 * index + own.constants.front().size() * number + 4 * row + 4 * of_corner * number);
+  return sum;
 }
 
 template <class Real>

@@ -14,6 +14,7 @@ class OpenClState final : public ResidentState<Real> {
   /// device has too little memory.
   OpenClState(const OpenClForce<Real>& elements, const NodalProblem<Real>& problem);
 
+  StepTraffic step_traffic() const override { return traffic_; }
   void write(const ResidentBody<Real>& body) override;
   void take(std::span<const ResidentStep> steps) override;
   bool is_healthy() override;
@@ -31,12 +32,14 @@ class OpenClState final : public ResidentState<Real> {
 
   const OpenClBuffer& keep(OpenClBuffer buffer);
   void clear_works();
+  StepTraffic traffic_of(const std::vector<int>& first_load, const std::vector<FaceForces>& faces) const;
 
   const OpenClForce<Real>& elements_;
   const OpenClDevice& device_;
   std::size_t nodes_;
   std::vector<std::size_t> by_row_;  // constraints in the order of the device
   std::size_t numbers_of_step_;
+  StepTraffic traffic_;
   std::vector<std::unique_ptr<OpenClBuffer>> constant_;  // buffers that kernels read
   std::vector<Faces> faces_;
   OpenClKernel move_, find_ill_;

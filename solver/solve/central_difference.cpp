@@ -110,6 +110,9 @@ class CentralDifference {
   /// Whether the end is reached, up to the roundoff of a sum of steps.
   bool finished() const { return time() >= settings_.duration * (1.0 - 1e-12); }
 
+  /// Of a step on the processor that takes them; none if steps are taken here.
+  StepTraffic traffic() const { return resident_ == nullptr ? StepTraffic{} : resident_->step_traffic(); }
+
   /// Leaves the body to the processor that takes its steps, if it is another one.
   void leave() {
     if (resident_ != nullptr) resident_->begin(body_, reactions_);
@@ -129,13 +132,8 @@ class CentralDifference {
 
   /// Takes the next step.
   void advance() {
-    const double step = due_step();
-    if (resident_ != nullptr) {
-      const LeapfrogClock::Coefficients coefficients = leapfrog_.tick(step);
-      resident_->add(numbers_of_step(coefficients));
-    } else {
-      leapfrog_.advance(step, [this](Body<Real>& body) { body.impose(curve(time()).value(), time()); });
-    }
+    if (resident_ != nullptr) return resident_->add(numbers_of_step(leapfrog_.tick(due_step())));
+    leapfrog_.advance(due_step(), [this](Body<Real>& body) { body.impose(curve(time()).value(), time()); });
   }
 
   /// Takes the next step and, if the body is healthy after it, passes on the displacements that an observer
@@ -217,14 +215,14 @@ class CentralDifference {
 
   /// The numbers of the last step for another processor.
   ResidentStep numbers_of_step(LeapfrogClock::Coefficients coefficients) {
-    const double now = curve(time()).value(), T = ramp_time(settings_);
     follow_paths();
-    ResidentStep numbers{coefficients.keep, coefficients.gain, step_size(),
-                         body_.factors_of_loads(time(), now), {}};
+    const double now = curve(time()).value(), T = ramp_time(settings_);
+    ResidentStep numbers{
+        coefficients.keep, coefficients.gain, step_size(), body_.factors_of_loads(time(), now), {}};
     for (std::size_t m = 0; m < moved_.size(); ++m) {
-      PathTerms by_time = accelerations_[m];
-      for (double& term : by_time) term /= T * T;
-      numbers.angles.push_back({path_terms(model_.scene().angles[m], now), moved_[m], by_time});
+      const auto& [a, b, c] = accelerations_[m];
+      numbers.angles.push_back(
+          {path_terms(model_.scene().angles[m], now), moved_[m], {a / (T * T), b / (T * T), c / (T * T)}});
     }
     return numbers;
   }
@@ -275,8 +273,7 @@ class CentralDifference {
   Leapfrog<Real> leapfrog_;
   SteadyStep steady_step_;
   Body<Real>& body_;
-  std::vector<double> reactions_;
-  std::vector<double> works_;                     // J, of constraints
+  std::vector<double> reactions_, works_;         // N and J, of constraints
   std::vector<PathTerms> moved_, accelerations_;  // of paths of each angle
   double next_step_ = 0.0;
   double adaption_energy_ = 0.0;
@@ -386,6 +383,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   motion.time = scheme.time();
   motion.steps = scheme.step();
   motion.never_adapted = adaption.active() && adaption_schedule.choices() == 0;
+  motion.traffic = scheme.traffic();
   motion.adaption_seconds = adaption.seconds();
   motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return motion;

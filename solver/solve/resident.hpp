@@ -23,6 +23,8 @@ class ResidentMotion {
   /// Starts from the body as it is here; `driving` are the forces (N) that move its constraints.
   void begin(const Body<Real>& body, const std::vector<double>& driving);
 
+  StepTraffic step_traffic() const { return state_->step_traffic(); }
+
   /// Collects a step.
   void add(ResidentStep step) { steps_.push_back(std::move(step)); }
 

@@ -157,15 +157,16 @@ def flops():
     return _called("flops")
 
 
-def kernels(method, case, *, dialect="c", precision=None, material=None):
+def kernels(method, case, *, dialect="c", precision=None, material=None, step=False):
     """The force of a method's elements with a case's law as source code for other processors.
 
     `dialect`: the language; a wrong one is answered with those known. `precision`: "double" or
     "float"; None: double where the dialect has it. `material`: its number in the case, from 1.
+    `step`: add the kernels that take steps where the state is; the force then reads nodes by places.
     Returns the text.
     """
     with _files(case) as (file,):
-        given = dict(case=file, dialect=dialect, precision=precision, material=material)
+        given = dict(case=file, dialect=dialect, precision=precision, material=material, step=step)
         return _called("kernels", method=method, **given)
 
 
