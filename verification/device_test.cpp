@@ -145,7 +145,8 @@ CaseOnMesh loaded_block() {
                 {"back", plane(points, 1, 0.03)}};
   for (int e = 0; e < 36; ++e) block.element_sets["lower"].push_back(e);
   Case& description = block.description;
-  description.materials.push_back({{Yeoh{.c1 = 500.0, .c2 = 100.0, .c3 = 10.0, .bulk = 2e4}, 1200.0}, "lower"});
+  description.materials.push_back(
+      {{Yeoh{.c1 = 500.0, .c2 = 100.0, .c3 = 10.0, .bulk = 2e4}, 1200.0}, "lower"});
   description.rotations = {
       {.set = "head", .axis = {0.0, 0.0, 1.0}, .angle = 0.3, .displacement = {0, 0, -0.004}}};
   description.forces.of<Pressure>() = {
@@ -230,17 +231,28 @@ TEST_F(Device, a_state_returns_to_the_last_check) {
   }
 }
 
-/// An element that is inverted is found on the device, and ends the motion as it does here.
+/// The head passes through the element below it in one step: found on the device, and said as it is here.
 TEST_F(Device, inverted_elements_are_found_there) {
   CaseOnMesh block = loaded_block();
-  block.description.rotations.front().displacement = {0.0, 0.0, -0.07};
+  block.description.rotations.front().displacement = {0.0, 0.0, -0.03};
+  DynamicsSettings& dynamics = block.description.dynamics;
+  dynamics.time_step = dynamics.ramp_time = 1e-4;
+  dynamics.check_interval = 1;
   const Scene scene = make_scene(block);
+  std::vector<std::string> said;
   for (const auto& processor : {std::shared_ptr<const Processor>{}, processor_}) {
     MethodChoice choice{.method = "tl-mean-dilatation"};
     choice.processor = processor;
     Observer silent;
-    EXPECT_THROW(integrate(Model(scene, choice), silent), ComputationError);
+    try {
+      integrate(Model(scene, choice), silent);
+    } catch (const ComputationError& error) {
+      said.emplace_back(error.what());
+    }
   }
+  ASSERT_EQ(said.size(), 2);
+  EXPECT_NE(said[0].find("det F must be positive"), std::string::npos) << said[0];
+  EXPECT_EQ(said[0], said[1]);
 }
 
 /// Such a body moves all the same: its state is copied in every step.

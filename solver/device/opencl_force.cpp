@@ -107,9 +107,14 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
   }
   const Rows<Real> coordinates = centred_coordinates<Real>(mesh.points, layout);
   const std::size_t results = 3 * Hexahedron{}.size() * order.elements.size() * sizeof(Real);
-  device_->require_room(std::array{2 * bytes_, bytes_ + places.size() * sizeof(int),
-                                   order.elements.size() * sizeof(Real), constants.size() * sizeof(Real),
-                                   axes.size() * sizeof(Real), slots.size() * sizeof(int), results});
+  held_ = {2 * bytes_,
+           bytes_ + places.size() * sizeof(int),
+           constants.size() * sizeof(Real),
+           axes.size() * sizeof(Real),
+           slots.size() * sizeof(int),
+           order.elements.size() * sizeof(Real),
+           results};
+  device_->require_room(held_);
 
   constant_.reserve(4);  // kernels refer to them
   const auto keep = [&]<class Values>(const Values& values) -> const OpenClBuffer& {
@@ -186,6 +191,12 @@ void OpenClForce<Real>::evaluate(State<Real>& state, Rows<Real>& force) const {
 
 template <class Real>
 std::unique_ptr<ResidentState<Real>> OpenClForce<Real>::resident(const NodalProblem<Real>& problem) const {
+  std::vector<std::size_t> all = held_;
+  all.insert(all.end(), 4, bytes_);  // displacements, increments, forces and loads
+  all.push_back(8 * (problem.dead_loads.size() + problem.constraints.size()) * sizeof(Real));
+  for (const FaceForces& own : problem.face_forces)
+    all.push_back(own.faces.size() * (12 + own.constants.front().size()) * sizeof(Real));
+  device_->require_room(all);
   return std::make_unique<OpenClState<Real>>(*this, problem);
 }
 

@@ -67,6 +67,7 @@ class OpenClForce final : public DelegatingForce<Real>, public StateKeeper<Real>
   std::unique_ptr<NodalSums> nodal_sums_;
   std::unique_ptr<OpenClBuffer> jacobians_;
   StepTraffic traffic_;
+  std::vector<std::size_t> held_;  // bytes of buffers
   mutable std::vector<Part> forces_, smallest_jacobians_;
   std::unique_ptr<OpenClKernel> sum_;
   std::size_t sums_;

@@ -17,10 +17,10 @@ struct KernelRequest {
   bool step = false;                 ///< with the kernels that take steps where the state is
 };
 
-/// The force of a method's elements with an elastic law of a case, as source in a language; with the kernels of
-/// nodes (`node_kernels`), the values at nodes are rows of four numbers. The provenance's
-/// version and revision are named in its comment. Throws InputError for a method or law without such a
-/// kernel, an unknown dialect, and a precision that it lacks.
+/// The force of a method's elements with an elastic law of a case, as source in a language; with the kernels
+/// of nodes (`node_kernels`), the values at nodes are rows of four numbers. The provenance's version and
+/// revision are named in its comment. Throws InputError for a method or law without such a kernel, an unknown
+/// dialect, and a precision that it lacks.
 std::string kernel_source(const KernelRequest& request, const Case& description,
                           const Provenance& provenance);
 
