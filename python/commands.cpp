@@ -165,7 +165,7 @@ std::string count_operations(const Arguments& /*given*/, Watch& watch) {
     auto parts = count_methods();
     const auto laws = count_laws();
     parts.insert(parts.end(), laws.begin(), laws.end());
-    return to_json(build_provenance(), parts);
+    return to_json(build_provenance(), parts, count_programs());
   });
 }
 

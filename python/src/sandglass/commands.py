@@ -152,7 +152,9 @@ def flops():
     """The operations per element and step of every method and law, counted by running the kernels.
 
     Returns a record with `records` of method, law, form, part, add, mul, div, special, total and
-    bytes.
+    bytes, and `programs`, the force of each method's element as straight-line code: operations,
+    those fused, instructions, the longest chain, values alive, and the share of the peak that the
+    mix of operations allows.
     """
     return _called("flops")
 
