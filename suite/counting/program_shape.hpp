@@ -4,13 +4,13 @@
 
 namespace sandglass {
 
-/// What bounds the speed of a straight-line program on a processor that adds, multiplies, or does both at once
-/// in one instruction.
+/// What bounds the speed of a straight-line program on a processor that adds, multiplies, or does both at
+/// once in one instruction.
 struct ProgramShape {
   int operations = 0;  ///< after sharing, without inputs and constants
   int fused = 0;       ///< products that go into a single sum or difference, and so need no instruction
   int chain = 0;       ///< the longest sequence of operations of which each needs the one before
-  int alive = 0;       ///< the most values that are needed later, in the order of recording, without constants
+  int alive = 0;  ///< the most values that are needed later, in the order of recording, without constants
 
   int instructions() const { return operations - fused; }
 
