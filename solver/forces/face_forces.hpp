@@ -8,9 +8,9 @@
 
 namespace sandglass {
 
-/// Forces on faces as a straight-line program of one face, for other processors. Its inputs are the motion (m)
-/// of the four corners, component i of corner I in place 3 I + i, then the numbers of `constants`; its results
-/// are the forces (N) on the corners in the same order, at the factor one.
+/// Forces on faces as a straight-line program of one face, for other processors. Its inputs are the motion
+/// (m) of the four corners, component i of corner I in place 3 I + i, then the numbers of `constants`; its
+/// results are the forces (N) on the corners in the same order, at the factor one.
 struct FaceForces {
   /// What the motion of the corners is, and the factor that multiplies the forces.
   enum class Resists { displacements, velocities };

@@ -116,8 +116,8 @@ class FaceSupports final : public BodyForce {
   /// Constants: stiffness or damping per area, then area and normal of each point.
   std::vector<FaceForces> face_forces() const override {
     FaceForces own{.faces = faces_};
-    own.program = face_program(
-        17, [&, only_normal = support_.only_normal](const auto& motion, const auto& constants) {
+    own.program =
+        face_program(17, [&, only_normal = support_.only_normal](const auto& motion, const auto& constants) {
           std::array<Triple<Recorded>, 4> forces{};
           for (std::size_t q = 0; q < 4; ++q) {
             const auto* number = &constants[1 + 4 * q];

@@ -154,23 +154,25 @@ const NodeKernel& node_kernel(std::string_view name) {
 template <class Real>
 std::string node_kernel_text(const NodeKernel& kernel, const Dialect& dialect) {
   if (dialect.integer.empty()) {
-    throw InputError(fmt::format("--dialect = '{}' has no kernels of nodes; allowed: c, opencl, cuda",
-                                 dialect.name));
+    throw InputError(
+        fmt::format("--dialect = '{}' has no kernels of nodes; allowed: c, opencl, cuda", dialect.name));
   }
   const auto filled = [&](std::string_view format, const auto&... arguments) {
-    return fmt::format(fmt::runtime(format), fmt::arg("real", std::is_same_v<Real, float> ? "float" : "double"),
-                       arguments...);
+    return fmt::format(fmt::runtime(format),
+                       fmt::arg("real", std::is_same_v<Real, float> ? "float" : "double"), arguments...);
   };
   std::string text = fmt::format("// {}\n", kernel.meaning);
   std::vector<std::string> arguments;
   for (const auto& [name, kind, meaning] : kernel.arguments) {
-    const std::array<std::string_view, 4> formats{dialect.integer, dialect.indices, dialect.array, dialect.results};
+    const std::array<std::string_view, 4> formats{dialect.integer, dialect.indices, dialect.array,
+                                                  dialect.results};
     arguments.push_back(filled(formats[static_cast<std::size_t>(kind)], fmt::arg("name", name),
                                fmt::arg("number", arguments.size())));
     text += fmt::format("//   {}: {}\n", name, meaning);
   }
-  return text + filled(dialect.kernel, fmt::arg("name", kernel.name),
-                       fmt::arg("arguments", fmt::to_string(fmt::join(arguments, dialect.between)))) +
+  return text +
+         filled(dialect.kernel, fmt::arg("name", kernel.name),
+                fmt::arg("arguments", fmt::to_string(fmt::join(arguments, dialect.between)))) +
          filled(kernel.body) + std::string(dialect.end);
 }
 

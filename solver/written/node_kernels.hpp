@@ -32,7 +32,8 @@ const std::vector<NodeKernel>& node_kernels();
 /// The kernel of this name.
 const NodeKernel& node_kernel(std::string_view name);
 
-/// Its text, with a comment that describes its arguments. Throws InputError for dialects without such kernels.
+/// Its text, with a comment that describes its arguments. Throws InputError for dialects without such
+/// kernels.
 template <class Real>
 std::string node_kernel_text(const NodeKernel& kernel, const Dialect& dialect);
 
