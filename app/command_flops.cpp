@@ -43,7 +43,19 @@ void add_flops_command(CLI::App& app) {
                "mul", "div", "special", "total");
     for (const auto& row : laws) fmt::print("{:<43}{}\n", row.law, columns(row.operations));
     rows.insert(rows.end(), laws.begin(), laws.end());
-    if (!json->empty()) write_text_file(*json, to_json(build_provenance(), rows));
+    const auto programs = count_programs();
+    fmt::print(
+        "\nthe force of an element as a straight-line program (`sandglass kernels`), equal operations "
+        "shared:\n"
+        "instructions, if products and sums are fused; the longest chain; values alive in the order as "
+        "written;"
+        "\nthe share of the peak that the mix allows\n{:<25}{:>11}{:>13}{:>7}{:>7}{:>7}\n",
+        "method", "operations", "instructions", "chain", "alive", "peak");
+    for (const auto& [method, shape] : programs) {
+      fmt::print("{:<25}{:>11}{:>13}{:>7}{:>7}{:>5.0f} %\n", method, shape.operations, shape.instructions(),
+                 shape.chain, shape.alive, 100.0 * shape.peak_share());
+    }
+    if (!json->empty()) write_text_file(*json, to_json(build_provenance(), rows, programs));
   });
 }
 

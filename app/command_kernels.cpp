@@ -54,6 +54,9 @@ void add_kernels_command(CLI::App& app) {
                       "double or float; default: double where the dialect has it");
   command->add_option("--material", options->request.material,
                       "number of the material, from 1, if the case has several");
+  command->add_flag(
+      "--step", options->request.step,
+      "add the kernels that take steps where the state is; the force then reads nodes by places");
   command->add_option("-o,--output", options->output, "write to this file instead of printing");
   command->callback([options] { write_kernels(*options); });
 }

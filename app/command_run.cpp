@@ -229,8 +229,7 @@ Answer static_answer(const Model& model, const std::optional<double>& sleep, Run
 Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoint* from) {
   Motion found = integrate(model, observer, from);
   observer.end();
-  const Scene& scene = model.scene();
-  print_dynamic_ending(found, scene.settings.dynamics.subcycles, scene.mesh.cells.size(), from != nullptr);
+  print_dynamic_ending(found, model, from != nullptr);
   return {.u = std::move(found.u),
           .status = found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete",
           .seconds = found.seconds,

@@ -15,6 +15,7 @@
 #include "mesh/edges.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/parts.hpp"
+#include "solve/resident.hpp"
 #include "solve/stable_step.hpp"
 
 namespace sandglass {
@@ -85,6 +86,17 @@ double energy_of_rounding(const Model& model) {
 std::string parts_text(const Scene& scene) {
   const int parts = number_of_parts(scene.mesh, scene.ties);
   return parts > 1 ? fmt::format("; {} separate parts", parts) : "";
+}
+
+/// What a step costs on another processor, or why the state was copied there in every step.
+void print_device(const Scene& scene, const StepTraffic& traffic) {
+  if (traffic.launches == 0) {
+    fmt::print("state copied to the device in every step: {}\n", why_not_resident(scene));
+  } else {
+    fmt::print("state on the device: {} and {:.4g} bytes per element in a step\n",
+               plural(traffic.launches, "kernel"),
+               static_cast<double>(traffic.bytes) / static_cast<double>(scene.mesh.cells.size()));
+  }
 }
 
 }  // namespace
@@ -181,8 +193,10 @@ void print_static_ending(const Relaxation& found, Precision precision, double to
                                 : "");
 }
 
-void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elements, bool went_on) {
-  const std::string small = subcycles > 1 ? plural(found.most_substeps, "subcycle") + ", " : std::string();
+void print_dynamic_ending(const Motion& found, const Model& model, bool went_on) {
+  const Scene& scene = model.scene();
+  const std::string small =
+      scene.settings.dynamics.subcycles > 1 ? plural(found.most_substeps, "subcycle") + ", " : std::string();
   const std::string ending =
       found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete";
   const double of_step = found.seconds / static_cast<double>(std::max(found.steps, 1L));
@@ -190,7 +204,8 @@ void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elemen
              plural(found.steps, "step"), with_prefix(found.smallest_step, "s"), small, ending, found.seconds,
              went_on ? " since the checkpoint"
                      : fmt::format(", {:.4g} ns per element and step",
-                                   1e9 * of_step / static_cast<double>(elements)));
+                                   1e9 * of_step / static_cast<double>(scene.mesh.cells.size())));
+  if (model.choice().processor != nullptr) print_device(scene, found.traffic);
   if (found.never_adapted) {
     fmt::print(stderr,
                "warning: the motion ended before the levels of elements were chosen, so all had the lowest; "

@@ -51,7 +51,7 @@ class HistoryReport {
 /// Prints the results of a run: the largest displacement of u (m), the smallest volume ratio of an element,
 /// the share of the hourglass energy, reactions, separate parts.
 void print_static_ending(const Relaxation& found, Precision precision, double tolerance, bool went_on);
-void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elements, bool went_on);
+void print_dynamic_ending(const Motion& found, const Model& model, bool went_on);
 void print_answer(const Scene& scene, const NodalField& u, const std::vector<double>& volume_ratios,
                   const HistoryReport& history);
 

@@ -165,14 +165,14 @@ std::string count_operations(const Arguments& /*given*/, Watch& watch) {
     auto parts = count_methods();
     const auto laws = count_laws();
     parts.insert(parts.end(), laws.begin(), laws.end());
-    return to_json(build_provenance(), parts);
+    return to_json(build_provenance(), parts, count_programs());
   });
 }
 
 std::string write_kernel(const Arguments& given, Watch& watch) {
   const KernelRequest request{given.text("method"), given.text("dialect"),
                               given.optional("precision", &Arguments::text).value_or(""),
-                              given.optional("material", &Arguments::integer)};
+                              given.optional("material", &Arguments::integer), given.flag("step")};
   const std::string of = given.text("case");
   return watch.run([&] { return Json(kernel_source(request, find_case(of), build_provenance())).dump(); });
 }

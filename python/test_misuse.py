@@ -183,7 +183,7 @@ CALLS = {
     "kernels": (
         sg.kernels,
         {"method": "tl-full", "case": "case.toml", "dialect": "c", "precision": "double"}
-        | {"material": 1},
+        | {"material": 1, "step": False},
     ),
     "write_mesh": (
         sg.write_mesh,

@@ -8,8 +8,11 @@
 #include "device/opencl_processor.hpp"
 #include "io/case_file.hpp"
 #include "solve/central_difference.hpp"
+#include "solve/resident.hpp"
 #include "solve/stable_step.hpp"
+#include "support/obstacles.hpp"
 #include "support/random_hexahedra.hpp"
+#include "support/random_scene.hpp"
 #include "support/scenes.hpp"
 
 namespace sandglass::verification {
@@ -87,10 +90,18 @@ TEST_F(Device, forces_of_every_method_and_law_are_those_of_this_processor) {
   EXPECT_GE(compared, (13 + 2 * 7) * 2);
 }
 
-/// A thousand steps, in which every step rounds displacements: at random, so that the error is that of one
-/// step times the root of their number. A rounding of the volume change is one of the pressure, K / mu times
-/// as large beside the shear stress; four is for the roundings of a step (float_budget_test.cpp), two for the
-/// two motions that are compared.
+/// The difference of two motions of a body, over its largest displacement: every step rounds displacements,
+/// at random, so that the error is that of one step times the root of their number. A rounding of the volume
+/// change is one of the pressure, K / mu times as large beside the shear stress; four is for the roundings of
+/// a step (float_budget_test.cpp), two for the two motions that are compared.
+double rounding_of_motions(const Scene& scene, Precision precision, double steps) {
+  const double roundoff = 0.5 * (precision == Precision::double_precision
+                                     ? std::numeric_limits<double>::epsilon()
+                                     : static_cast<double>(std::numeric_limits<float>::epsilon()));
+  const double ratio = lame_lambdas(scene.materials).front() / shear_moduli(scene.materials).front() + 1.0;
+  return 2.0 * 4.0 * roundoff * ratio * std::sqrt(steps);
+}
+
 TEST_F(Device, motions_of_cases_are_those_of_this_processor) {
   constexpr int steps = 1000;
   for (const char* name : {"column", "cylinder-compression", "pushed-ellipsoid", "stiff-core"}) {
@@ -112,17 +123,163 @@ TEST_F(Device, motions_of_cases_are_those_of_this_processor) {
       const Motion other = integrate(Model(scene, choice), silent);
       ASSERT_EQ(other.steps, own.steps);
       EXPECT_GE(other.steps, steps);
-      const double roundoff = 0.5 * (precision == Precision::double_precision
-                                         ? std::numeric_limits<double>::epsilon()
-                                         : static_cast<double>(std::numeric_limits<float>::epsilon()));
+      EXPECT_GT(other.traffic.launches, 0) << name << ": the state did not stay on the device";
       const double largest = largest_distance(own.u, NodalField(own.u.size()));
-      const double ratio =
-          lame_lambdas(scene.materials).front() / shear_moduli(scene.materials).front() + 1.0;
-      EXPECT_LE(largest_distance(other.u, own.u) / largest, 2.0 * 4.0 * roundoff * ratio * std::sqrt(steps))
+      EXPECT_LE(largest_distance(other.u, own.u) / largest, rounding_of_motions(scene, precision, steps))
           << name << ' ' << name_of(precision);
       EXPECT_EQ(integrate(Model(scene, choice), silent).u, other.u) << name << ": other bits in another run";
     }
   }
+}
+
+/// A block of two materials: its head moves and turns, its foot rests on springs and dashpots, one that
+/// resists only along the normal; a pressure follows one side and rises and falls, forces pull at edges, and
+/// it has weight and initial velocities.
+CaseOnMesh loaded_block() {
+  CaseOnMesh block{plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45}),
+                   box({0.04, 0.03, 0.06}, {4, 3, 6})};
+  const NodalField& points = block.mesh.points;
+  block.sets = {{"foot", plane(points, 2, 0.0)},
+                {"head", plane(points, 2, 0.06)},
+                {"side", plane(points, 0, 0.04)},
+                {"back", plane(points, 1, 0.03)}};
+  for (int e = 0; e < 36; ++e) block.element_sets["lower"].push_back(e);
+  Case& description = block.description;
+  description.materials.push_back(
+      {{Yeoh{.c1 = 500.0, .c2 = 100.0, .c3 = 10.0, .bulk = 2e4}, 1200.0}, "lower"});
+  description.rotations = {
+      {.set = "head", .axis = {0.0, 0.0, 1.0}, .angle = 0.3, .displacement = {0, 0, -0.004}}};
+  description.forces.of<Pressure>() = {
+      {"side", 200.0, {.times = {0.0, 0.01, 0.05}, .factors = {0.0, 1.0, 0.2}}}};
+  description.forces.of<Support>() = {{"foot", 2e6, 300.0, false}, {"back", 1e5, 50.0, true}};
+  description.forces.of<DeadForce>() = {{"side", {0.0, 0.02, 0.0}, {}}};
+  description.forces.of<Gravity>() = {{{0.0, 0.0, -9.81}}};
+  description.velocities = {{.value = {0.02, 0.0, 0.0}}};
+  description.quasi_static = false;
+  description.dynamics.duration = 0.06;
+  description.dynamics.ramp_time = 0.04;
+  description.dynamics.damping = 2.0;
+  description.dynamics.frames = 7;
+  return block;
+}
+
+/// Everything that a run reports, with every kind of load that the device computes: works, reactions and
+/// energies are sums of products of forces and displacements, whose errors are those of the stiffest element,
+/// some ten times the relative error of displacements.
+TEST_F(Device, every_load_acts_on_a_state_that_stays_there) {
+  const CaseOnMesh block = loaded_block();
+  const Scene scene = make_scene(block);
+  for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
+    Recorder own, other, again;
+    MethodChoice choice{.method = "tl-enhanced", .precision = precision};
+    const Motion here = integrate(Model(scene, choice), own);
+    choice.processor = processor_;
+    const Motion there = integrate(Model(scene, choice), other);
+    EXPECT_EQ(here.traffic.launches, 0);
+    EXPECT_EQ(there.traffic.launches, 2 + 1 + 4 + 1) << "laws, pressures, springs and dashpots, nodes";
+    ASSERT_EQ(there.steps, here.steps);
+    ASSERT_EQ(other.rows.size(), own.rows.size());
+    ASSERT_EQ(other.frames.size(), own.frames.size());
+    const double bound = rounding_of_motions(scene, precision, static_cast<double>(here.steps));
+    const double unit = largest_distance(here.u, NodalField(here.u.size()));
+    double energy = 0.0, force = 0.0, speed = 0.0;
+    for (const HistoryRow& row : own.rows) {
+      energy = std::max({energy, row.strain, std::abs(row.external_work)});
+      for (const auto& [set, reaction] : row.reactions) force = std::max(force, length(reaction));
+    }
+    for (const Vector& v : here.v) speed = std::max(speed, length(v));
+    for (std::size_t n = 0; n < own.rows.size(); ++n) {
+      const HistoryRow &a = own.rows[n], &b = other.rows[n];
+      EXPECT_NEAR(b.external_work, a.external_work, 10.0 * bound * energy) << name_of(precision) << ' ' << n;
+      EXPECT_NEAR(b.strain, a.strain, 10.0 * bound * energy);
+      EXPECT_NEAR(b.kinetic, a.kinetic, 10.0 * bound * energy);
+      EXPECT_NEAR(b.residual, a.residual, 10.0 * bound);
+      for (const auto& [set, reaction] : a.reactions)
+        EXPECT_LE(distance(b.reactions.at(set), reaction), 10.0 * bound * force) << set;
+    }
+    for (std::size_t n = 0; n < own.frames.size(); ++n)
+      EXPECT_LE(largest_distance(other.frames[n].u, own.frames[n].u), bound * unit) << n;
+    EXPECT_LE(largest_distance(there.v, here.v), 10.0 * bound * speed);
+    integrate(Model(scene, choice), again);
+    ASSERT_EQ(again.rows.size(), other.rows.size());
+    for (std::size_t n = 0; n < again.rows.size(); ++n)
+      EXPECT_EQ(again.rows[n].external_work, other.rows[n].external_work) << "other bits in another run";
+  }
+}
+
+/// Steps that prove too long are taken again from the last check (largest_frequency_test.cpp has this body),
+/// whether they are taken here or there.
+TEST_F(Device, a_state_returns_to_the_last_check) {
+  RandomScene random(20, 37);
+  Scene scene = random.scene();
+  scene.settings.quasi_static = false;
+  DynamicsSettings& settings = scene.settings.dynamics;
+  settings.body_frequency = 1;
+  const NodalField rest(scene.mesh.points.size());
+  settings.duration = 1.3e4 * stable_step(Model(scene, {"tl-mean-dilatation"}), rest).step;
+  settings.ramp_time = 0.5 * settings.duration;
+  Recorder recorder;
+  MethodChoice choice{.method = "tl-mean-dilatation"};
+  choice.processor = processor_;
+  const Motion motion = integrate(Model(scene, choice), recorder);
+  EXPECT_GT(motion.traffic.launches, 0);
+  EXPECT_GT(motion.repeated, 0);
+  double largest = 0.0;
+  for (const HistoryRow& row : recorder.rows) {
+    largest = std::max(largest, row.external_work);
+    EXPECT_LT(total_energy(row) - row.external_work, 0.01 * largest + 1e-12);
+  }
+}
+
+/// The head passes through the element below it in one step: found on the device, and said as it is here.
+TEST_F(Device, inverted_elements_are_found_there) {
+  CaseOnMesh block = loaded_block();
+  block.description.rotations.front().displacement = {0.0, 0.0, -0.03};
+  DynamicsSettings& dynamics = block.description.dynamics;
+  dynamics.time_step = dynamics.ramp_time = 1e-4;
+  dynamics.check_interval = 1;
+  const Scene scene = make_scene(block);
+  std::vector<std::string> said;
+  for (const auto& processor : {std::shared_ptr<const Processor>{}, processor_}) {
+    MethodChoice choice{.method = "tl-mean-dilatation"};
+    choice.processor = processor;
+    Observer silent;
+    try {
+      integrate(Model(scene, choice), silent);
+    } catch (const ComputationError& error) {
+      said.emplace_back(error.what());
+    }
+  }
+  ASSERT_EQ(said.size(), 2);
+  EXPECT_NE(said[0].find("det F must be positive"), std::string::npos) << said[0];
+  EXPECT_EQ(said[0], said[1]);
+}
+
+/// Such a body moves all the same: its state is copied in every step.
+TEST_F(Device, what_cannot_stay_there_is_named) {
+  CaseOnMesh block = loaded_block();
+  const Scene scene = make_scene(block);
+  EXPECT_EQ(why_not_resident(scene), "");
+  Scene other = scene;
+  other.settings.dynamics.subcycles = 2;
+  EXPECT_NE(why_not_resident(other).find("subcycles"), std::string::npos);
+  other = scene;
+  other.ties.push_back({0, {{1, 1.0}}});
+  EXPECT_NE(why_not_resident(other).find("ties"), std::string::npos);
+
+  block.description.forces.of<Support>().clear();
+  block.description.forces.of<Obstacle>() = {ground()};
+  const Scene on_ground = make_scene(block);
+  EXPECT_NE(why_not_resident(on_ground).find("[[obstacle]]"), std::string::npos);
+  Observer silent;
+  MethodChoice choice{.method = "tl-enhanced"};
+  const Motion here = integrate(Model(on_ground, choice), silent);
+  choice.processor = processor_;
+  const Motion there = integrate(Model(on_ground, choice), silent);
+  EXPECT_EQ(there.traffic.launches, 0);
+  EXPECT_LE(largest_distance(there.u, here.u),
+            rounding_of_motions(on_ground, Precision::double_precision, static_cast<double>(here.steps)) *
+                largest_distance(here.u, NodalField(here.u.size())));
 }
 
 TEST_F(Device, names_that_are_no_processor_are_refused_with_those_that_are) {

@@ -16,9 +16,9 @@ REAL = {"double": (np.float64, ctypes.c_double), "float": (np.float32, ctypes.c_
 COUNT = 100
 
 
-def written(dialect, precision, method="tl-perturbation", case="column"):
+def written(dialect, precision, *more, method="tl-perturbation", case="column"):
     """The text of a kernel."""
-    options = "--dialect", dialect, "--precision", precision
+    options = "--dialect", dialect, "--precision", precision, *more
     return sandglass("kernels", method, case, *options, code=0).stdout
 
 
@@ -89,11 +89,12 @@ __device__ float fabs(float); __device__ double fabs(double);
 @pytest.mark.skipif(not shutil.which("clang++"), reason="needs clang: ci/setup sanitize")
 @pytest.mark.parametrize("precision", REAL)
 def test_cuda_compiles_for_cards(precision, tmp_path):
-    (tmp_path / "kernel.cu").write_text(CUDA + written("cuda", precision))
+    (tmp_path / "kernel.cu").write_text(CUDA + written("cuda", precision, "--step"))
     flags = "-x cuda --cuda-device-only --cuda-gpu-arch=sm_70 -nocudainc -nocudalib -S -O1".split()
     done = ran("clang++", *flags, tmp_path / "kernel.cu", "-o", tmp_path / "kernel.ptx")
     assert done.returncode == 0, done.stderr
-    assert ".entry tl_perturbation_force" in (tmp_path / "kernel.ptx").read_text()
+    for kernel in ("tl_perturbation_force", "sum_at_nodes", "move_nodes", "find_ill"):
+        assert f".entry {kernel}(" in (tmp_path / "kernel.ptx").read_text()
 
 
 def test_every_method_is_written_or_refused_with_a_reason():
@@ -115,6 +116,7 @@ def test_every_method_is_written_or_refused_with_a_reason():
     [
         ("tl-perturbation column --dialect hlsl", "--dialect: hlsl not in {c,opencl,cuda,wgsl}"),
         ("tl-perturbation column --dialect wgsl -p double", "WGSL has no double precision"),
+        ("tl-perturbation column --dialect wgsl --step", "no kernels of nodes; allowed: c, opencl, cuda"),
         ("tl-perturbation column --material 2", "--material = 2 must be in [1, 1]"),
         ("tl-perturbation cardiac-beam-1 --dialect wgsl", "lose digits in WGSL"),
         ("tl-perturbation stiff-core", "materials; choose one with --material, from 1 to 2"),

@@ -292,6 +292,16 @@ def test_operations_of_the_control_are_those_that_are_counted():
         assert re.search(rf"^tl-perturbation +{form} +hourglass .* {total} *$", counted, re.M), form
 
 
+def test_bytes_of_a_step_on_a_device_are_those_that_are_printed():
+    """One row of the table, on another mesh: with more nodes per element there are more bytes."""
+    printed = sandglass("run", "pushed-ellipsoid", "-p", "float", "--device", "opencl")
+    if printed.returncode == 2 and "OpenCL finds none" in printed.stderr:
+        pytest.skip("no OpenCL device: ci/setup test installs pocl-opencl-icd")
+    found = re.search(r"(\d+) kernels and ([\d.]+) bytes per element in a step", printed.stdout)
+    listed = re.search(r"^\| `tl-perturbation`, float \| (\d+) ", DOCUMENTS["solver/README.md"], re.M)
+    assert found[1] == "2" and int(listed[1]) < float(found[2]) < 1.5 * int(listed[1])
+
+
 def test_citation_and_licence_are_those_of_the_project():
     citation = (ROOT / "CITATION.cff").read_text()
     licence = re.search(r"^license: (.*)$", citation, re.MULTILINE)[1]

@@ -7,37 +7,14 @@
 
 #include "assembly/face_gather.hpp"
 #include "base/error.hpp"
+#include "device/opencl_state.hpp"
 #include "mesh/node_elements.hpp"
 #include "written/kernel_text.hpp"
+#include "written/node_kernels.hpp"
 
 namespace sandglass {
 
 namespace {
-
-/// Adds the forces of the elements around each node. `slots` are the places of the first components.
-constexpr std::string_view sum_text = R"(
-__kernel void sum_at_nodes(long nodes, long count, __global const int* restrict first,
-                           __global const int* restrict slots, __global const {real}* restrict f,
-                           __global {real}* restrict force) {{
-  const long node = get_global_id(0);
-  if (node < nodes) {{
-    {real} x = 0, y = 0, z = 0;
-    for (int k = first[node]; k < first[node + 1]; ++k) {{
-      x += f[slots[k]];
-      y += f[slots[k] + count];
-      z += f[slots[k] + 2 * count];
-    }}
-    force[4 * node] = x;
-    force[4 * node + 1] = y;
-    force[4 * node + 2] = z;
-    force[4 * node + 3] = 0;
-  }}
-}}
-)";
-
-std::size_t rounded_up(std::size_t count) {
-  return (count + OpenClKernel::group - 1) / OpenClKernel::group * OpenClKernel::group;
-}
 
 /// The elements in the order of the device: by law, each law's in a multiple of a work group, filled up with
 /// repetitions of its last one, whose forces nobody adds.
@@ -64,7 +41,7 @@ DeviceOrder device_order(const Mesh& mesh, const Materials& materials) {
       order.elements.push_back(static_cast<int>(e));
     }
     if (order.elements.size() == first) continue;
-    order.elements.resize(rounded_up(order.elements.size()), order.elements.back());
+    order.elements.resize(in_groups(order.elements.size()), order.elements.back());
     order.laws.push_back({materials.of(at(order.elements[first])), first, order.elements.size() - first});
   }
   return order;
@@ -94,7 +71,7 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
       bytes_(mesh.points.size() * sizeof(Row<Real>)),
       u_(*device_, bytes_),
       force_(*device_, bytes_),
-      sums_(rounded_up(mesh.points.size())) {
+      sums_(in_groups(mesh.points.size())) {
   const Layout& layout = this->layout();
   const DeviceOrder order = device_order(mesh, materials);
   const auto count = static_cast<cl_long>(order.elements.size());
@@ -130,24 +107,29 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
   }
   const Rows<Real> coordinates = centred_coordinates<Real>(mesh.points, layout);
   const std::size_t results = 3 * Hexahedron{}.size() * order.elements.size() * sizeof(Real);
-  device_->require_room(std::array{2 * bytes_, bytes_ + places.size() * sizeof(int),
-                                   constants.size() * sizeof(Real), axes.size() * sizeof(Real),
-                                   slots.size() * sizeof(int), results});
+  held_ = {2 * bytes_,
+           bytes_ + places.size() * sizeof(int),
+           constants.size() * sizeof(Real),
+           axes.size() * sizeof(Real),
+           slots.size() * sizeof(int),
+           order.elements.size() * sizeof(Real),
+           results};
+  device_->require_room(held_);
 
-  constant_.reserve(7);  // kernels refer to them
+  constant_.reserve(4);  // kernels refer to them
   const auto keep = [&]<class Values>(const Values& values) -> const OpenClBuffer& {
     return constant_.emplace_back(*device_, values);
   };
-  const OpenClBuffer &on_places = keep(places), &on_constants = keep(constants), &on_axes = keep(axes);
-  const OpenClBuffer &on_coordinates = keep(coordinates), &f = keep(results);
+  const OpenClBuffer &on_places = keep(places), &on_constants = keep(constants), &on_axes = keep(axes),
+                     &on_coordinates = keep(coordinates);
+  nodal_sums_ = std::make_unique<NodalSums>(NodalSums{
+      static_cast<int>(count), slots.size(), {*device_, first}, {*device_, slots}, {*device_, results}});
+  jacobians_ = std::make_unique<OpenClBuffer>(*device_, order.elements.size() * sizeof(Real));
   const Dialect& dialect = dialect_named("opencl");
-  for (const auto& [material, first_element, number] : order.laws) {
-    const AnyLaw& law = materials.list[material].law;
-    const ForceProgram program =
-        force_program(choice.method, elastic_law(kernel_law(materials.list[material])), has_fibres(law));
+  const auto kernel_of = [&](const ForceProgram& program, const OpenClBuffer& result) {
     OpenClKernel kernel(*device_,
-                        kernel_text<Real>(program, dialect, {"element_forces", {}}, NodalValues::of_nodes),
-                        "element_forces");
+                        kernel_text<Real>(program, dialect, {"of_elements", {}}, NodalValues::of_nodes),
+                        "of_elements");
     kernel.set(count, on_places);
     cl_uint next = 2;
     for (const KernelArray& array : program.arrays) {
@@ -156,22 +138,66 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
                                   : array.name == "constants" ? on_constants
                                                               : on_axes);
     }
-    kernel.set_argument(next, f);
-    parts_.push_back({std::move(kernel), first_element, number});
+    kernel.set_argument(next, result);
+    return kernel;
+  };
+  for (const auto& [material, first_element, number] : order.laws) {
+    const AnyLaw& law = materials.list[material].law;
+    forces_.push_back(
+        {kernel_of(
+             force_program(choice.method, elastic_law(kernel_law(materials.list[material])), has_fibres(law)),
+             nodal_sums_->f),
+         first_element, number});
   }
+  const bool reads_coordinates =
+      std::ranges::count(jacobian_program(choice.method).arrays, "X", &KernelArray::name) > 0;
+  traffic_ = {static_cast<int>(order.laws.size()), results + places.size() * sizeof(int) +
+                                                       (constants.size() + axes.size()) * sizeof(Real) +
+                                                       (reads_coordinates ? 2 : 1) * bytes_};
+  smallest_jacobians_.push_back(
+      {kernel_of(jacobian_program(choice.method), *jacobians_), 0, order.elements.size()});
   sum_ = std::make_unique<OpenClKernel>(
-      *device_, fmt::format(sum_text, fmt::arg("real", sizeof(Real) == sizeof(float) ? "float" : "double")),
-      "sum_at_nodes");
-  sum_->set(static_cast<cl_long>(mesh.points.size()), count, keep(first), keep(slots), f, force_);
+      *device_, node_kernel_text<Real>(node_kernel("sum_at_nodes"), dialect), "sum_at_nodes");
+  sum_->set(static_cast<cl_long>(mesh.points.size()), nodal_sums_->elements, nodal_sums_->first,
+            nodal_sums_->slots, nodal_sums_->f, force_);
+}
+
+template <class Real>
+void OpenClForce<Real>::compute(std::vector<Part>& parts, const OpenClBuffer& u) const {
+  for (Part& part : parts) {
+    part.kernel.set_argument(2, u);
+    part.kernel.run(part.first, part.count);
+  }
+}
+
+template <class Real>
+void OpenClForce<Real>::compute_forces(const OpenClBuffer& u) const {
+  compute(forces_, u);
+}
+
+template <class Real>
+void OpenClForce<Real>::compute_jacobians(const OpenClBuffer& u) const {
+  compute(smallest_jacobians_, u);
 }
 
 template <class Real>
 void OpenClForce<Real>::evaluate(State<Real>& state, Rows<Real>& force) const {
   const std::scoped_lock lock(one_evaluation_);
   u_.write(state.u.data(), bytes_);
-  for (const Part& part : parts_) part.kernel.run(part.first, part.count);
+  compute_forces(u_);
   sum_->run(0, sums_);
   force_.read(force.data(), bytes_);
+}
+
+template <class Real>
+std::unique_ptr<ResidentState<Real>> OpenClForce<Real>::resident(const NodalProblem<Real>& problem) const {
+  std::vector<std::size_t> all = held_;
+  all.insert(all.end(), 4, bytes_);  // displacements, increments, forces and loads
+  all.push_back(8 * (problem.dead_loads.size() + problem.constraints.size()) * sizeof(Real));
+  for (const FaceForces& own : problem.face_forces)
+    all.push_back(own.faces.size() * (12 + own.constants.front().size()) * sizeof(Real));
+  device_->require_room(all);
+  return std::make_unique<OpenClState<Real>>(*this, problem);
 }
 
 template class OpenClForce<double>;

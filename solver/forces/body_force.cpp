@@ -2,7 +2,13 @@
 
 #include <algorithm>
 
+#include "forces/face_forces.hpp"
+
 namespace sandglass {
+
+std::vector<FaceForces> BodyForce::face_forces() const {
+  return {};
+}
 
 const BodyForce* first_not_dead(const BodyForces& forces) {
   for (const auto& force : forces) {

@@ -60,6 +60,8 @@ struct ShapeSlopes {
 /// The factors of all load curves of a scene.
 using Factors = std::span<const double>;
 
+struct FaceForces;
+
 /// A force of a case on a mesh: immutable and shared.
 class BodyForce {
  public:
@@ -103,6 +105,9 @@ class BodyForce {
 
   /// Its nodal loads at the factor one if they do not depend on the motion of the body; otherwise none.
   virtual std::span<const NodalLoad> dead_loads() const = 0;
+
+  /// Its forces as programs of one face each, for other processors; none if it does not act on faces alone.
+  virtual std::vector<FaceForces> face_forces() const;
 
   /// The same force on a part of the mesh; null if it does not act there.
   virtual std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "forces/face_forces.hpp"
 #include "mesh/vectors.hpp"
 
 namespace sandglass {
@@ -95,6 +96,28 @@ class FacePressures final : public BodyForce {
   }
 
   std::span<const NodalLoad> dead_loads() const override { return {}; }
+
+  /// Constants: the pressure (Pa), then the corners (m) relative to the first, which keeps their digits.
+  std::vector<FaceForces> face_forces() const override {
+    FaceForces own{.faces = faces_, .curve = curve_};
+    own.program = face_program(13, [](const auto& motion, const auto& constants) {
+      auto x = motion;
+      for (std::size_t k = 0; k < 12; ++k) {
+        Recorded& component = x[k / 3].entries[k % 3];
+        component = component + constants[1 + k];
+      }
+      auto forces = pressure_forces(x);
+      for (auto& force : forces) force = constants[0] * force;
+      return forces;
+    });
+    for (const auto& corners : corners_) {
+      std::vector<double>& numbers = own.constants.emplace_back(1, value_);
+      for (const Vector& corner : corners) {
+        for (std::size_t i = 0; i < 3; ++i) numbers.push_back(corner[i] - corners[0][i]);
+      }
+    }
+    return {std::move(own)};
+  }
 
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override {
     auto faces = faces_in(part, faces_);

@@ -2,9 +2,21 @@
 
 #include <algorithm>
 
+#include "forces/face_forces.hpp"
+
 namespace sandglass {
 
 namespace {
+
+/// The part of a field at the corners of a face that is resisted at one of its points, normal or all, times
+/// the area.
+template <class T>
+Triple<T> resisted(const FacePointOf<T>& point, const std::array<Triple<T>, 4>& field, bool only_normal) {
+  Triple<T> t{};
+  for (std::size_t I = 0; I < 4; ++I) t += (T(point.N[I]) * point.area) * field[I];
+  if (!only_normal) return t;
+  return (double_dot(point.normal, t) / (point.area * point.area)) * point.normal;
+}
 
 class FaceSupports final : public BodyForce {
  public:
@@ -101,6 +113,41 @@ class FaceSupports final : public BodyForce {
   void add_size(double /*arm*/, double& /*sum*/) const override {}
   std::span<const NodalLoad> dead_loads() const override { return {}; }
 
+  /// Constants: stiffness or damping per area, then area and normal of each point.
+  std::vector<FaceForces> face_forces() const override {
+    FaceForces own{.faces = faces_};
+    own.program =
+        face_program(17, [&, only_normal = support_.only_normal](const auto& motion, const auto& constants) {
+          std::array<Triple<Recorded>, 4> forces{};
+          for (std::size_t q = 0; q < 4; ++q) {
+            const auto* number = &constants[1 + 4 * q];
+            const FacePointOf<Recorded> point{
+                points_.front()[q].N, {}, number[0], {{number[1], number[2], number[3]}}};
+            const auto t = resisted(point, motion, only_normal);
+            for (std::size_t I = 0; I < 4; ++I) forces[I] += (-constants[0] * Recorded(point.N[I])) * t;
+          }
+          return forces;
+        });
+    const auto with = [&](double resistance) {
+      FaceForces all = own;
+      for (const auto& points : points_) {
+        std::vector<double>& numbers = all.constants.emplace_back(1, resistance);
+        for (const FacePoint& point : points) {
+          const auto& n = point.normal.entries;
+          numbers.insert(numbers.end(), {point.area, n[0], n[1], n[2]});
+        }
+      }
+      return all;
+    };
+    std::vector<FaceForces> all;
+    if (support_.stiffness > 0.0) all.push_back(with(support_.stiffness));
+    if (support_.damping > 0.0) {
+      all.push_back(with(support_.damping));
+      all.back().motion = FaceForces::Resists::velocities;
+    }
+    return all;
+  }
+
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override {
     auto faces = faces_in(part, faces_);
     if (faces.empty()) return nullptr;
@@ -123,18 +170,13 @@ class FaceSupports final : public BodyForce {
   /// u (m), that is resisted, normal or all, times the area.
   template <class Use>
   void for_each_point(std::size_t k, NodalRows field, const Use& use) const {
-    for (const FacePoint& point : points_[k]) {
-      Vector t{};
-      for (std::size_t I = 0; I < 4; ++I) {
-        for (std::size_t i = 0; i < 3; ++i) t[i] += point.N[I] * point.area * field[faces_[k][I]][i];
-      }
-      if (support_.only_normal) {
-        const auto& n = point.normal.entries;
-        const double along = (n[0] * t[0] + n[1] * t[1] + n[2] * t[2]) / (point.area * point.area);
-        t = {along * n[0], along * n[1], along * n[2]};
-      }
-      use(point.N, t);
+    std::array<Triple<double>, 4> own;
+    for (std::size_t I = 0; I < 4; ++I) {
+      const Row<double>& row = field[faces_[k][I]];
+      own[I] = {{row[0], row[1], row[2]}};
     }
+    for (const FacePoint& point : points_[k])
+      use(point.N, resisted(point, own, support_.only_normal).entries);
   }
 
   /// Calls use(k, I, point) for the Gauss points of all faces k and their corners I.

@@ -13,10 +13,21 @@ std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& 
   return corners;
 }
 
+namespace {
+
+std::array<Triple<double>, 4> triples(const std::array<Vector, 4>& corners) {
+  return {{{corners[0]}, {corners[1]}, {corners[2]}, {corners[3]}}};
+}
+
+}  // namespace
+
 std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners) {
-  std::array<Triple<double>, 4> x;
-  for (std::size_t I = 0; I < 4; ++I) x[I] = {corners[I]};
-  return gauss_points_of(x);
+  return gauss_points_of(triples(corners));
+}
+
+std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x) {
+  const auto forces = pressure_forces(triples(x));
+  return {forces[0].entries, forces[1].entries, forces[2].entries, forces[3].entries};
 }
 
 Triple<double> interpolated(const std::array<double, 4>& N, const std::array<Vector, 4>& nodal) {
@@ -30,16 +41,6 @@ void add_at_corners(double factor, const std::array<Vector, 4>& own, const Quadr
   for (std::size_t I = 0; I < 4; ++I) {
     for (std::size_t i = 0; i < 3; ++i) field[at(face[I])][i] += factor * own[I][i];
   }
-}
-
-std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x) {
-  std::array<Vector, 4> forces{};
-  for (const auto& point : gauss_points_of(x)) {
-    for (std::size_t I = 0; I < 4; ++I) {
-      for (std::size_t i = 0; i < 3; ++i) forces[I][i] -= point.N[I] * point.normal.entries[i];
-    }
-  }
-  return forces;
 }
 
 std::vector<Quadrilateral> faces_within(std::vector<Quadrilateral> faces, const std::vector<int>& nodes) {

@@ -12,10 +12,6 @@ struct NodalLoad {
   std::size_t curve = 0;  ///< the number of its load curve in the scene
 };
 
-/// Nodal forces (N) of a pressure of 1 Pa on a bilinear face with corners x (m): minus the integral of N_I n
-/// da, exact.
-std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x);
-
 /// A Gauss point of a face: the shape functions of its four nodes, its position (m), and its share of the
 /// area (m^2).
 template <class T>
@@ -51,6 +47,18 @@ std::array<FacePointOf<T>, 4> gauss_points_of(const std::array<Triple<T>, 4>& co
   return result;
 }
 std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners);
+
+/// Nodal forces (N) of a pressure of 1 Pa on a bilinear face with corners x (m): minus the integral of N_I n
+/// da, exact.
+template <class T>
+std::array<Triple<T>, 4> pressure_forces(const std::array<Triple<T>, 4>& x) {
+  std::array<Triple<T>, 4> forces{};
+  for (const auto& point : gauss_points_of(x)) {
+    for (std::size_t I = 0; I < 4; ++I) forces[I] += T(-point.N[I]) * point.normal;
+  }
+  return forces;
+}
+std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x);
 
 /// Vectors at the corners of a face, interpolated by the shape functions of one of its points.
 Triple<double> interpolated(const std::array<double, 4>& N, const std::array<Vector, 4>& nodal);

@@ -168,6 +168,25 @@ Rows<Real> Body<Real>::on_free_components(const std::vector<double>& nodal) cons
   return rows;
 }
 
+template <class Real>
+ResidentBody<Real> Body<Real>::leave() const {
+  const std::size_t rows = force_.size(), constraints = reactions_.size();
+  const std::vector<Real> none(constraints);
+  return {state_.u, state_.increment, force_, loads_.by_row(rows), none, none, none, std::vector<Real>(rows)};
+}
+
+template <class Real>
+void Body<Real>::arrive(const ResidentBody<Real>& there, double step, double factor, double time) {
+  state_.u = there.u;
+  state_.increment = there.increment;
+  state_.step = step;
+  force_ = there.force;
+  reactions_.assign(there.reactions.begin(), there.reactions.end());
+  load_factor_ = factor;
+  loads_.set(time, factor);
+  loads_.follow(there.u, there.loads, there.works_of_loads);
+}
+
 template class Body<double>;
 template class Body<float>;
 

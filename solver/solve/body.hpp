@@ -4,6 +4,7 @@
 #include <span>
 
 #include "assembly/gather_elements.hpp"
+#include "assembly/resident.hpp"
 #include "assembly/row_ties.hpp"
 #include "problem/model.hpp"
 #include "solve/loads.hpp"
@@ -69,6 +70,16 @@ class Body {
   /// increments to the change; from now on loads follow this factor and `time` (s). Three more displacements
   /// follow for each obstacle that a program may move.
   void impose(std::span<const double> displacements, double factor, double time);
+
+  /// The factors of load curves at a time (s) and load factor.
+  std::vector<double> factors_of_loads(double time, double factor) const {
+    return loads_.factors_at(time, factor);
+  }
+
+  /// What another processor needs in order to go on from here, and the body that it has moved on to, at a
+  /// time (s) and load factor, after a step of `step` s.
+  ResidentBody<Real> leave() const;
+  void arrive(const ResidentBody<Real>& there, double step, double factor, double time);
 
   /// Updates tied nodes and their increments.
   void follow() {

@@ -10,55 +10,19 @@
 #include "base/error.hpp"
 #include "mesh/vectors.hpp"
 #include "solve/adaption.hpp"
+#include "solve/cubic.hpp"
+#include "solve/energy_watch.hpp"
 #include "solve/frame.hpp"
 #include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/loading_curve.hpp"
+#include "solve/resident.hpp"
 #include "solve/stable_step.hpp"
 #include "solve/steady_step.hpp"
 
 namespace sandglass {
 
 namespace {
-
-/// Displacements (m) at the share s of a step of h seconds, interpolated from displacements and velocities
-/// (m/s) at its ends: of third order, so that reported motions do not depend on the positions of the steps.
-NodalField cubic(double s, double h, const NodalField& u, const NodalField& v, const NodalField& u_after,
-                 const NodalField& v_after) {
-  const double r = 1.0 - s;
-  NodalField between(u.size());
-  for (std::size_t n = 0; n < u.size(); ++n)
-    for (std::size_t i = 0; i < 3; ++i)
-      between[n][i] = r * r * ((1.0 + 2.0 * s) * u[n][i] + s * h * v[n][i]) +
-                      s * s * ((1.0 + 2.0 * r) * u_after[n][i] - r * h * v_after[n][i]);
-  return between;
-}
-
-/// Detects energy that no work explains, because too long steps feed the fastest vibrations.
-class EnergyWatch {
- public:
-  /// Takes a motion's energy and the work done on it (J), and the step (s). Returns whether the difference
-  /// has risen noticeably above its smallest value since the last change of the step, which changes the
-  /// conserved energy.
-  bool rises(double energy, double work, double step) {
-    constexpr double noticeable = 0.02;  // of the largest energy
-    largest_ = std::max({largest_, energy, std::abs(work)});
-    least_ = step == step_ ? std::min(least_, energy - work) : energy - work;
-    step_ = step;
-    return !(energy - work - least_ <= noticeable * largest_);
-  }
-
-  template <class Archive>
-  void keep(Archive& archive) {
-    archive("largest energy", largest_);
-    archive("least unexplained energy", least_);
-    archive("step of least unexplained energy", step_);
-  }
-
- private:
-  double largest_ = 0.0, least_ = 0.0;  // J
-  double step_ = 0.0;                   // s
-};
 
 /// The quantities of the scheme, one function each; the order of calls is in `integrate_body`.
 template <class Real>
@@ -74,7 +38,8 @@ class CentralDifference {
         reactions_(model.scene().constraints.size(), 0.0),
         works_(reactions_.size(), 0.0),
         moved_(model.scene().angles.size()),
-        accelerations_(moved_.size()) {
+        accelerations_(moved_.size()),
+        resident_(resident_motion(model, elements, leapfrog_)) {
     leapfrog_.subcycle(model);
   }
 
@@ -145,8 +110,29 @@ class CentralDifference {
   /// Whether the end is reached, up to the roundoff of a sum of steps.
   bool finished() const { return time() >= settings_.duration * (1.0 - 1e-12); }
 
+  /// Of a step on the processor that takes them; none if steps are taken here.
+  StepTraffic traffic() const { return resident_ == nullptr ? StepTraffic{} : resident_->step_traffic(); }
+
+  /// Leaves the body to the processor that takes its steps, if it is another one.
+  void leave() {
+    if (resident_ != nullptr) resident_->begin(body_, reactions_);
+  }
+
+  /// Brings the body here from that processor.
+  void arrive() {
+    if (resident_ != nullptr) resident_->bring(body_, curve(time()).value(), time(), reactions_, works_);
+  }
+
+  /// Whether the body, which is then here, is healthy.
+  bool is_healthy() {
+    const bool healthy = resident_ == nullptr ? sandglass::is_healthy(body_) : resident_->is_healthy();
+    arrive();
+    return healthy;
+  }
+
   /// Takes the next step.
   void advance() {
+    if (resident_ != nullptr) return resident_->add(numbers_of_step(leapfrog_.tick(due_step())));
     leapfrog_.advance(due_step(), [this](Body<Real>& body) { body.impose(curve(time()).value(), time()); });
   }
 
@@ -158,9 +144,10 @@ class CentralDifference {
       advance();
       return false;
     }
+    arrive();
     const NodalField u = body_.field(body_.state().u), v = velocities();
     advance();
-    if (!is_healthy(body_)) return true;
+    if (!is_healthy()) return true;
     const NodalField u_after = body_.field(body_.state().u), v_after = velocities();
     while (observer.next_sample() <= time() * (1.0 + 1e-12)) {
       const double left = (time() - observer.next_sample()) / step_size();
@@ -170,10 +157,10 @@ class CentralDifference {
   }
 
   /// Adds the work of imposed displacements and forces over the last step, from the mean of the forces at its
-  /// ends.
+  /// ends. Another processor that takes steps does this as well.
   void add_external_work() {
-    const double now = curve(time()).value(), before = curve(time() - step_size()).value();
-    follow_paths(before, now);
+    if (resident_ != nullptr) return;
+    follow_paths();
     const auto& constraints = model_.scene().constraints;
     for (const std::size_t k : body_.constraints().own()) {
       const ImposedPath& path = constraints[k].path;
@@ -226,9 +213,24 @@ class CentralDifference {
 
   LoadingCurve curve(double time) const { return loading_curve(settings_, time); }
 
-  /// Updates the changes of the terms of paths over the last step, from one load factor to the next, and
-  /// their second derivatives with respect to relative time.
-  void follow_paths(double before, double now) {
+  /// The numbers of the last step for another processor.
+  ResidentStep numbers_of_step(LeapfrogClock::Coefficients coefficients) {
+    follow_paths();
+    const double now = curve(time()).value(), T = ramp_time(settings_);
+    ResidentStep numbers{
+        coefficients.keep, coefficients.gain, step_size(), body_.factors_of_loads(time(), now), {}};
+    for (std::size_t m = 0; m < moved_.size(); ++m) {
+      const auto& [a, b, c] = accelerations_[m];
+      numbers.angles.push_back(
+          {path_terms(model_.scene().angles[m], now), moved_[m], {a / (T * T), b / (T * T), c / (T * T)}});
+    }
+    return numbers;
+  }
+
+  /// Updates the changes of the terms of paths over the last step, and their second derivatives with respect
+  /// to relative time.
+  void follow_paths() {
+    const double now = curve(time()).value(), before = curve(time() - step_size()).value();
     const double rate = curve(time()).rate(), acceleration = curve(time()).acceleration();
     for (std::size_t m = 0; m < moved_.size(); ++m) {
       const double angle = model_.scene().angles[m];
@@ -271,11 +273,11 @@ class CentralDifference {
   Leapfrog<Real> leapfrog_;
   SteadyStep steady_step_;
   Body<Real>& body_;
-  std::vector<double> reactions_;
-  std::vector<double> works_;                     // J, of constraints
+  std::vector<double> reactions_, works_;         // N and J, of constraints
   std::vector<PathTerms> moved_, accelerations_;  // of paths of each angle
   double next_step_ = 0.0;
   double adaption_energy_ = 0.0;
+  std::unique_ptr<ResidentMotion<Real>> resident_;  // null: steps are taken here
 };
 
 template <class Real>
@@ -348,6 +350,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   std::vector<std::byte> sound;                           // the state at the last check
   const bool alone = model.choice().ranks->count() == 1;  // one rank keeps only a part of the state
   if (alone) keep(StateCopy(sound));
+  scheme.leave();
   while (!scheme.finished() && !motion.interrupted) {
     const bool sampled = scheme.advance(observer);
     observer.stepped(scheme.time(), scheme.step_size());
@@ -356,10 +359,11 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     motion.most_substeps = std::max(motion.most_substeps, body.substeps());
     const bool check_due = scheme.step() % settings.check_interval == 0, due = check_due || frame_due();
     if (!due && !sampled) continue;
-    const bool healthy = is_healthy(body);
+    const bool healthy = scheme.is_healthy();
     if ((!healthy || gains_energy()) && alone && scheme.may_shorten()) {
       keep(StateCopy(std::as_const(sound)));
       scheme.shorten();
+      scheme.leave();
       ++motion.repeated;
     } else if (due) {
       if (!healthy) require_healthy(body, scheme.step());
@@ -379,6 +383,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   motion.time = scheme.time();
   motion.steps = scheme.step();
   motion.never_adapted = adaption.active() && adaption_schedule.choices() == 0;
+  motion.traffic = scheme.traffic();
   motion.adaption_seconds = adaption.seconds();
   motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return motion;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "assembly/resident.hpp"
 #include "problem/model.hpp"
 #include "problem/observer.hpp"
 
@@ -17,6 +18,7 @@ struct Motion {
   bool never_adapted = false;  ///< an adaptive run that ended before levels were chosen
   bool interrupted = false;
   double seconds = 0.0;           ///< wall time of the steps
+  StepTraffic traffic = {};       ///< of a step on another processor; no launches: the state stays here
   double adaption_seconds = 0.0;  ///< the share of it for the choice of levels, adaptive methods
 };
 

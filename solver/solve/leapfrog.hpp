@@ -74,6 +74,9 @@ class Leapfrog {
     take(next_step, clock_.advance(next_step), impose);
   }
 
+  /// Advances the time alone: another processor takes the step with these coefficients.
+  LeapfrogClock::Coefficients tick(double next_step) { return clock_.advance(next_step); }
+
   /// A step of `step` s with given coefficients; suite/benchmark/ measures its time. Allocates nothing.
   template <class Impose>
   void take(double step, LeapfrogClock::Coefficients coefficients, const Impose& impose) {

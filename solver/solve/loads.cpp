@@ -271,6 +271,27 @@ void Loads<Real>::add_work(const Rows<Real>& u) {
   std::copy(memory_.begin(), memory_.end(), memory_before_.begin());
 }
 
+template <class Real>
+Rows<Real> Loads<Real>::by_row(std::size_t rows) const {
+  Rows<Real> all(rows);
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) all[rows_[k]][i] = static_cast<Real>(forces_[k][i]);
+  }
+  return all;
+}
+
+template <class Real>
+void Loads<Real>::follow(const Rows<Real>& u, const Rows<Real>& loads, std::span<const Real> works) {
+  take(u, u_before_);
+  take(loads, forces_);
+  forces_before_ = forces_;
+  square_ = 0.0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    work_[k] += static_cast<double>(works[rows_[k]]);
+    for (std::size_t i = 0; i < 3; ++i) square_ += forces_[k][i] * forces_[k][i];
+  }
+}
+
 template class Loads<double>;
 template class Loads<float>;
 

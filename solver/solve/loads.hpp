@@ -13,6 +13,9 @@ class Loads {
  public:
   Loads(const Scene& scene, const Layout& layout);
 
+  /// The factors of all curves at a time and load factor, as `set` sets them.
+  std::vector<double> factors_at(double time, double load_factor) const;
+
   /// Sets the factors of all curves, at a time (s, or the share of a quasi-static load) and a load factor.
   void set(double time, double load_factor);
 
@@ -76,6 +79,13 @@ class Loads {
   /// The sum of all work added, J.
   double work() const;
 
+  /// The loads (N) that were last evaluated, by row, of which there are `rows`; without contacts.
+  Rows<Real> by_row(std::size_t rows) const;
+
+  /// Continues from displacements (m) and loads (N) of another processor, which did this work (J) since the
+  /// last call of this or of `add_work`; all by row, without contacts.
+  void follow(const Rows<Real>& u, const Rows<Real>& loads, std::span<const Real> works);
+
   /// Makes the complete data known to all ranks.
   void gather();
 
@@ -103,8 +113,6 @@ class Loads {
   /// Sets the values of loaded rows to those of all rows.
   void take(const Rows<Real>& all, Rows<double>& loaded) const;
   Rows<double> loaded(const Rows<Real>& all) const;
-
-  std::vector<double> factors_at(double time, double load_factor) const;
 
   /// Sets the values at loaded rows that other ranks own.
   void gather(std::span<double> values) const;

@@ -57,6 +57,7 @@ const std::vector<Dialect>& dialects() {
        .results = "@group(0) @binding({number}) var<storage, read_write> {name}: array<f32>;\n",
        .indices = "@group(0) @binding({number}) var<storage, read> {name}: array<i32>;\n",
        .between = "",
+       .integer = "",
        .kernel = "{arguments}\n@compute @workgroup_size(64) fn {name}(@builtin(global_invocation_id) id: "
                  "vec3u) {{\n  let count = arrayLength(&f) / 24;\n  let e = id.x;\n  if (e < count) {{\n",
        .keeps_sums = false}};

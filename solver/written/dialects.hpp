@@ -28,12 +28,13 @@ struct Dialect {
   std::string_view mask = "const int {name} = {value};";            ///< the same of a comparison
   std::string_view select = "({mask} ? {a} : {b})";
 
-  std::string_view array;           ///< an argument of the kernel, which it reads; {number} of them
-  std::string_view results;         ///< the same, which it sets
-  std::string_view indices;         ///< the same of integers, which it reads
-  std::string_view between = ", ";  ///< two of them
-  std::string_view kernel;          ///< from the head of the kernel to the loop over elements e
-  bool keeps_sums = true;           ///< whether its compilers keep the order of sums
+  std::string_view array;                   ///< an argument of the kernel, which it reads; {number} of them
+  std::string_view results;                 ///< the same, which it sets
+  std::string_view indices;                 ///< the same of integers, which it reads
+  std::string_view between = ", ";          ///< two of them
+  std::string_view integer = "int {name}";  ///< the same of one integer; empty: no kernels of nodes
+  std::string_view kernel;                  ///< from the head of the kernel to the loop over elements e
+  bool keeps_sums = true;                   ///< whether its compilers keep the order of sums
   std::string_view entry = "{name}[{k} * count + e]";  ///< number k of element e in an array
   std::string_view end = "  }\n}\n";                   ///< of the kernel
 };

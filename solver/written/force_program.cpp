@@ -36,8 +36,9 @@ Aggregate inputs(Tape& tape) {
   return aggregate;
 }
 
-template <class Method>
-ForceProgram record(const CalledLaw& law, bool has_fibres) {
+/// Records results(motion, element, axes) of a method's element; the axes are null unless it has fibres.
+template <class Method, class Results>
+ForceProgram record(bool has_fibres, const Results& results) {
   using K = Kernel<Method>;
   using Element = typename K::template Element<Recorded>;
   Tape tape;
@@ -62,11 +63,26 @@ ForceProgram record(const CalledLaw& law, bool has_fibres) {
     add("axes", sizeof axes, "material axes, the rows of a rotation: fibres, sheets, their normal");
     axes = inputs<MaterialAxes<Recorded>>(tape);
   }
-  typename K::template History<Recorded> none{};
-  const auto now = K::deformation(motion, element);
-  const auto f = from_modes(K::force(now, element, none, with_axes(law, has_fibres ? &axes : nullptr)));
-  force.program = tape.program({f.entries.begin(), f.entries.end()});
+  force.program = tape.program(results(motion, element, has_fibres ? &axes : nullptr));
   return force;
+}
+
+template <class Method>
+ForceProgram record_force(const CalledLaw& law, bool has_fibres) {
+  using K = Kernel<Method>;
+  return record<Method>(has_fibres, [&](const auto& motion, const auto& element, const auto* axes) {
+    typename K::template History<Recorded> none{};
+    const auto now = K::deformation(motion, element);
+    const auto f = from_modes(K::force(now, element, none, with_axes(law, axes)));
+    return std::vector<Recorded>(f.entries.begin(), f.entries.end());
+  });
+}
+
+template <class Method>
+ForceProgram record_jacobian() {
+  return record<Method>(false, [](const auto& motion, const auto& element, const auto*) {
+    return std::vector<Recorded>{Kernel<Method>::smallest_jacobian(motion, element)};
+  });
 }
 
 }  // namespace
@@ -77,17 +93,31 @@ std::string_view why_not_written(std::string_view method) {
   return reason;
 }
 
-ForceProgram force_program(std::string_view method, const CalledLaw& law, bool has_fibres) {
-  ForceProgram force;
+namespace {
+
+/// What `recorder` records of the method of this name, which must have a kernel of one element.
+template <class Recorder>
+ForceProgram of_method(std::string_view method, const Recorder& recorder) {
+  ForceProgram program;
   with_named_type(Methods{}, method, [&]<class Method>() {
     if constexpr (obstacle<Method>().empty()) {
-      force = record<Method>(law, has_fibres);
+      program = recorder.template operator()<Method>();
     } else {
       throw InputError(
           fmt::format("method '{}' has no kernel of one element: {}", Method::name, obstacle<Method>()));
     }
   });
-  return force;
+  return program;
+}
+
+}  // namespace
+
+ForceProgram force_program(std::string_view method, const CalledLaw& law, bool has_fibres) {
+  return of_method(method, [&]<class Method>() { return record_force<Method>(law, has_fibres); });
+}
+
+ForceProgram jacobian_program(std::string_view method) {
+  return of_method(method, []<class Method>() { return record_jacobian<Method>(); });
 }
 
 std::vector<double> element_constants(std::string_view method, const NodalVectors<double>& X,

@@ -29,6 +29,9 @@ struct ForceProgram {
 /// methods whose force needs more than the element's motion and constants.
 ForceProgram force_program(std::string_view method, const CalledLaw& law, bool has_fibres);
 
+/// Records the smallest det F at the integration points of such a method's element, its only result.
+ForceProgram jacobian_program(std::string_view method);
+
 /// The numbers (SI units) of an element with corners X (m) in the array `constants` of its method's kernel;
 /// none if the kernel has no such array. The method must accept the element. Without `axes` the law's are
 /// those of space.

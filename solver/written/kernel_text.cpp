@@ -83,7 +83,8 @@ class Writer {
     text += filled(dialect_.kernel, fmt::arg("name", title.name),
                    fmt::arg("arguments", fmt::to_string(fmt::join(arguments, dialect_.between))));
     const std::string indent(4, ' ');
-    for (int I = 0; by_places_ && I < NodalVectors<Real>::rows; ++I) {
+    const int nodes = force.arrays.front().numbers / 3;
+    for (int I = 0; by_places_ && I < nodes; ++I) {
       text += indent +
               filled(dialect_.mask, fmt::arg("name", fmt::format("place{}", I)),
                      fmt::arg("value", entry("places", I))) +
@@ -115,9 +116,11 @@ class Writer {
       text += fmt::format("//   {} ({} numbers): {}\n", array.name, array.numbers, array.meaning);
     }
     if (by_places_) {
-      text +=
-          "//   places (8 numbers): component i of the element's node I is at places[I * count + e] + i of a "
-          "nodal array\n";
+      text += fmt::format(
+          "//   places ({} numbers): component i of the element's node I is at places[I * count + e] + i of "
+          "a "
+          "nodal array\n",
+          force.arrays.front().numbers / 3);
     }
     const auto count = [&](auto... operations) {
       return std::count_if(force.program.steps.begin(), force.program.steps.end(),

@@ -6,6 +6,7 @@
 #include "counting/method_work.hpp"
 #include "counting/paper_hourglass_force.hpp"
 #include "material/laws.hpp"
+#include "written/force_program.hpp"
 
 namespace sandglass {
 
@@ -45,7 +46,20 @@ std::vector<CountedPart> count_laws() {
   return rows;
 }
 
-std::string to_json(const Provenance& provenance, const std::vector<CountedPart>& parts) {
+std::vector<CountedProgram> count_programs() {
+  const NeoHookean law{.young_modulus = 3000.0,
+                       .poisson_ratio = 0.49};  // its moduli are constants of programs
+  std::vector<CountedProgram> programs;
+  for (const MethodEntry& method : methods()) {
+    if (!why_not_written(method.name).empty()) continue;
+    const ForceProgram force = force_program(method.name, elastic_law(kernel_law(law)), false);
+    programs.push_back({method.name, shape_of(force.program)});
+  }
+  return programs;
+}
+
+std::string to_json(const Provenance& provenance, const std::vector<CountedPart>& parts,
+                    const std::vector<CountedProgram>& programs) {
   nlohmann::ordered_json document;
   for (const auto& [name, value] : provenance) document[name] = value;
   document["records"] = nlohmann::ordered_json::array();
@@ -60,6 +74,16 @@ std::string to_json(const Provenance& provenance, const std::vector<CountedPart>
                                    {"special", part.operations.special},
                                    {"total", part.operations.total()},
                                    {"bytes", part.bytes}});
+  }
+  document["programs"] = nlohmann::ordered_json::array();
+  for (const auto& [method, shape] : programs) {
+    document["programs"].push_back({{"method", method},
+                                    {"operations", shape.operations},
+                                    {"fused", shape.fused},
+                                    {"instructions", shape.instructions()},
+                                    {"chain", shape.chain},
+                                    {"alive", shape.alive},
+                                    {"peak_share", shape.peak_share()}});
   }
   return document.dump(1) + "\n";
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "counting/operation_count.hpp"
+#include "counting/program_shape.hpp"
 #include "io/result_file.hpp"
 
 namespace sandglass {
@@ -25,7 +26,17 @@ std::vector<CountedPart> count_methods();
 /// Every law at one point of an element; counts do not depend on its parameters.
 std::vector<CountedPart> count_laws();
 
-/// As JSON: provenance, and one record for each part.
-std::string to_json(const Provenance& provenance, const std::vector<CountedPart>& parts);
+/// The force of an element as a recorded program.
+struct CountedProgram {
+  std::string_view method;
+  ProgramShape shape;
+};
+
+/// Of every method that has such a program (`sandglass kernels`), with one law.
+std::vector<CountedProgram> count_programs();
+
+/// As JSON: provenance, one record for each part, and one for each program.
+std::string to_json(const Provenance& provenance, const std::vector<CountedPart>& parts,
+                    const std::vector<CountedProgram>& programs);
 
 }  // namespace sandglass

@@ -10,6 +10,7 @@
 #include "base/names.hpp"
 #include "commands/execution_options.hpp"
 #include "written/kernel_text.hpp"
+#include "written/node_kernels.hpp"
 
 namespace sandglass {
 
@@ -101,7 +102,13 @@ std::string kernel_source(const KernelRequest& request, const Case& description,
                      fmt::format("{}, written by `sandglass kernels` of sandglass {} ({}).", dialect.language,
                                  of("version"), of("revision"))}};
   std::replace(title.name.begin(), title.name.end(), '-', '_');
-  return single ? kernel_text<float>(force, dialect, title) : kernel_text<double>(force, dialect, title);
+  const auto written = [&]<class Real>(Real) {
+    if (!request.step) return kernel_text<Real>(force, dialect, title);
+    std::string text = kernel_text<Real>(force, dialect, title, NodalValues::of_nodes);
+    for (const NodeKernel& kernel : node_kernels()) text += "\n" + node_kernel_text<Real>(kernel, dialect);
+    return text;
+  };
+  return single ? written(0.0F) : written(0.0);
 }
 
 }  // namespace sandglass

@@ -296,6 +296,7 @@ def kernels(
     dialect: str = ...,
     precision: Literal["double", "float"] | None = ...,
     material: int | None = ...,
+    step: bool = ...,
 ) -> str: ...
 def write_mesh(
     case: _Case,

@@ -152,20 +152,23 @@ def flops():
     """The operations per element and step of every method and law, counted by running the kernels.
 
     Returns a record with `records` of method, law, form, part, add, mul, div, special, total and
-    bytes.
+    bytes, and `programs`, the force of each method's element as straight-line code: operations,
+    those fused, instructions, the longest chain, values alive, and the share of the peak that the
+    mix of operations allows.
     """
     return _called("flops")
 
 
-def kernels(method, case, *, dialect="c", precision=None, material=None):
+def kernels(method, case, *, dialect="c", precision=None, material=None, step=False):
     """The force of a method's elements with a case's law as source code for other processors.
 
     `dialect`: the language; a wrong one is answered with those known. `precision`: "double" or
     "float"; None: double where the dialect has it. `material`: its number in the case, from 1.
+    `step`: add the kernels that take steps where the state is; the force then reads nodes by places.
     Returns the text.
     """
     with _files(case) as (file,):
-        given = dict(case=file, dialect=dialect, precision=precision, material=material)
+        given = dict(case=file, dialect=dialect, precision=precision, material=material, step=step)
         return _called("kernels", method=method, **given)
 
 
