@@ -47,10 +47,10 @@ constexpr double most_extended_growth = 10.0;
 /// The nodes that touch obstacles are updated when the norm has fallen to this share. Where that does not
 /// leave fewer nodes whose contact is contrary, the next update waits for a tenth of that, until the share is
 /// the least.
-constexpr double updated_share = 0.1, least_updated_share = 1e-3;
+constexpr double updated_share = 0.3, least_updated_share = 1e-3;
 
 /// They are updated after this many steps at the latest.
-constexpr int steps_between_contacts = 25;
+constexpr int steps_between_contacts = 5;
 
 /// This many updates may fail to leave fewer such nodes; then only one of them is changed at a time, until
 /// they are fewer, which excludes cycles (Portugal, Judice and Vicente 1994).

@@ -10,17 +10,26 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     : curves_(scene.curves),
       contacts_(contacts_of(scene.forces)),
       moves_nodes_(std::ranges::any_of(contacts_, [](const auto* one) { return one->moves_nodes(); })),
+      pushes_(std::ranges::any_of(contacts_, [](const auto* one) { return !one->moves_nodes(); })),
       ranks_(layout.team.ranks),
       place_of_node_(scene.mesh.points.size(), -1),
-      all_dead_(first_not_dead(scene.forces) == nullptr),
+      all_dead_(std::ranges::all_of(scene.forces, [](const auto& force) {
+        const auto* contact = dynamic_cast<const ContactForce*>(force.get());
+        return contact != nullptr ? contact->moves_nodes() : !force->dead_loads().empty();
+      })),
       factors_(factors_at(0.0, 0.0)),
       movable_(movable_of(scene.forces)) {
+  std::vector<bool> moves(place_of_node_.size());
   for (const auto& force : scene.forces) {
-    for (const int node : force->nodes()) place_of_node_[at(node)] = 0;
+    for (const int node : force->nodes()) {
+      place_of_node_[at(node)] = 0;
+      if (force->dead_loads().empty()) moves[at(node)] = true;
+    }
   }
   for (std::size_t n = 0; n < place_of_node_.size(); ++n) {
     if (place_of_node_[n] < 0) continue;
     place_of_node_[n] = static_cast<int>(rows_.size());
+    if (moves[n]) moving_.push_back(rows_.size());
     rows_.push_back(at(layout.row_of_node[n]));
     owned_.push_back(layout.owns(static_cast<int>(n)));
   }
@@ -67,21 +76,22 @@ void Loads<Real>::move_obstacles(std::span<const double> moves) {
 template <class Real>
 Rows<double> Loads<Real>::loaded(const Rows<Real>& all) const {
   Rows<double> rows(rows_.size());
-  take(all, rows);
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) rows[k][i] = static_cast<double>(all[rows_[k]][i]);
+  }
   return rows;
 }
 
 template <class Real>
 void Loads<Real>::take(const Rows<Real>& all, Rows<double>& loaded) const {
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
+  for (const std::size_t k : moving_) {
     for (std::size_t i = 0; i < 3; ++i) loaded[k][i] = static_cast<double>(all[rows_[k]][i]);
   }
 }
 
 template <class Real>
 void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
-  const auto moves_nodes = [](const ContactForce* one) { return one->moves_nodes(); };
-  if (loads_.empty() && std::ranges::all_of(contacts_, moves_nodes)) return;  // no forces
+  if (loads_.empty() && !pushes_) return;
   if (!all_dead_) {
     take(state.u, u_);
     take(state.increment, increment_);
@@ -90,22 +100,21 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
   const Rows<double>&u = u_, &increment = increment_;
   const NodalMotion motion{by_node(u.data()), by_node(increment.data()), static_cast<double>(state.step)};
   for (const auto* one : loads_) one->add_forces(factors_, motion, by_node(forces_.data()));
-  std::fill(touching_.begin(), touching_.end(), Row<double>{});
-  for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c]->add_contact(factors_, motion.u, memory_.data() + memory_of_[c], by_node(touching_.data()));
   // Dead forces are known on all ranks, others on ranks that know the displacements.
   if (!all_dead_) gather({numbers_of(forces_), 4 * rows_.size()});
   square_ = 0.0;
-  const auto take_off = [&](const Rows<double>& all) {
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        force[rows_[k]][i] -= static_cast<Real>(all[k][i]);
-        square_ += all[k][i] * all[k][i];
-      }
+  const auto take_off = [&](std::size_t k, const Row<double>& one) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      force[rows_[k]][i] -= static_cast<Real>(one[i]);
+      square_ += one[i] * one[i];
     }
   };
-  take_off(forces_);
-  take_off(touching_);
+  for (std::size_t k = 0; k < rows_.size(); ++k) take_off(k, forces_[k]);
+  if (!pushes_) return;
+  for (const std::size_t k : moving_) touching_[k] = {};
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->add_contact(factors_, motion.u, memory_.data() + memory_of_[c], by_node(touching_.data()));
+  for (const std::size_t k : moving_) take_off(k, touching_[k]);
 }
 
 template <class Real>
@@ -138,7 +147,7 @@ bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses,
     contacts_[c]->push_out(factors_, {by_node(u_.data()), by_node(increment_.data()), by_node(masses.data()),
                                       gain, memory_.data() + memory_of_[c]});
   }
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
+  for (const std::size_t k : moving_) {
     for (std::size_t i = 0; i < 3; ++i) {
       state.u[rows_[k]][i] = static_cast<Real>(u_[k][i]);
       state.increment[rows_[k]][i] = static_cast<Real>(increment_[k][i]);
@@ -186,11 +195,12 @@ double Loads<Real>::potential(const Rows<Real>& u) const {
 template <class Real>
 void Loads<Real>::slide(const Rows<Real>& before, Rows<Real>& u) const {
   if (contacts_.empty()) return;
-  const Rows<double> from = loaded(before);
-  Rows<double> to = loaded(u);
+  Rows<double> from(rows_.size()), to(rows_.size());
+  take(before, from);
+  take(u, to);
   for (std::size_t c = 0; c < contacts_.size(); ++c)
     contacts_[c]->slide(factors_, by_node(from.data()), memory_.data() + memory_of_[c], by_node(to.data()));
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
+  for (const std::size_t k : moving_) {
     for (std::size_t i = 0; i < 3; ++i) u[rows_[k]][i] = static_cast<Real>(to[k][i]);
   }
 }
@@ -218,13 +228,14 @@ void Loads<Real>::correct_contact() {
 
 template <class Real>
 void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const {
-  const Rows<double> there = loaded(u);
+  Rows<double> there(rows_.size());
+  take(u, there);
   Rows<float> own(rows_.size());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     contacts_[c]->set_contact_stiffness(factors_, by_node(there.data()), memory_.data() + memory_of_[c],
                                         by_node(own.data()));
   }
-  for (std::size_t k = 0; k < rows_.size(); ++k) roots[rows_[k]] = own[k];
+  for (const std::size_t k : moving_) roots[rows_[k]] = own[k];
 }
 
 template <class Real>

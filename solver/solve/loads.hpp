@@ -100,7 +100,7 @@ class Loads {
     return {loaded, place_of_node_};
   }
 
-  /// Sets the values of loaded rows to those of all rows.
+  /// Sets the values of loaded rows to those of all rows, where forces follow the motion.
   void take(const Rows<Real>& all, Rows<double>& loaded) const;
   Rows<double> loaded(const Rows<Real>& all) const;
 
@@ -112,16 +112,17 @@ class Loads {
   const std::vector<LoadCurve>& curves_;
   std::vector<const BodyForce*> loads_;  // all except obstacles
   std::vector<const ContactForce*> contacts_;
-  bool moves_nodes_;
+  bool moves_nodes_, pushes_;           // whether any of them moves nodes, or adds forces
   std::vector<std::size_t> memory_of_;  // first row of each
   std::vector<std::size_t> rows_;       // that carry loads
   std::vector<bool> owned_;             // by this rank, of these
+  std::vector<std::size_t> moving_;     // of these, whose forces follow the motion: not only dead ones
   std::shared_ptr<const Ranks> ranks_;
   std::vector<int> place_of_node_;       // among the loaded rows; -1 for others
-  bool all_dead_;                        // no force depends on the motion of the body
+  bool all_dead_;                        // no force depends on the motion, except by moving nodes
   std::vector<double> factors_;          // of curves
   std::vector<Movable> movable_;         // obstacles
-  Rows<double> u_, increment_;           // m, of loaded rows; zero where all are dead
+  Rows<double> u_, increment_;           // m, of loaded rows; zero where forces are dead
   Rows<double> forces_;                  // N, of loaded rows, except those of obstacles
   Rows<double> touching_;                // N, those; empty without any
   Rows<double> masses_;                  // 1/kg, inverse, of loaded rows; empty without obstacles

@@ -116,7 +116,10 @@ void MixedBody<Real>::linearize(double penalty) {
     for (std::size_t row = 0; row < change.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) change[row][i] -= linearized_at_[row][i];
     }
-    if (multigrid_.elements().largest_gradient(change) < hardly_changed && !touches_elsewhere) return;
+    if (multigrid_.elements().largest_gradient(change) < hardly_changed) {
+      if (touches_elsewhere) multigrid_.update_contact();
+      return;
+    }
   }
   linearized_at_ = std::move(u);
   linearized_penalty_ = penalty;
