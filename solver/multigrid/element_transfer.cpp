@@ -125,16 +125,17 @@ void ElementTransfer::sample(const Mesh& mesh, std::size_t element, float share_
 }
 
 void ElementTransfer::gather() {
-  const bool may_touch = !elements_.contact().empty();
-  if (may_touch) without_contact_.resize(contents_.size());
-  std::vector<BoxProblem>& problems = may_touch ? without_contact_ : grid_.problems();
   grid_.for_each_line(0, [&](std::size_t first, std::size_t count) {
-    for (std::size_t box = first; box < first + count; ++box) problems[box] = problem_of(contents_[box]);
+    for (std::size_t box = first; box < first + count; ++box) {
+      grid_.problems()[box] = problem_of(contents_[box]);
+    }
   });
-  if (may_touch) gather_contact();
+  without_contact_.clear();
+  if (!elements_.contact().empty()) gather_contact();
 }
 
 void ElementTransfer::gather_contact() {
+  if (without_contact_.empty()) without_contact_ = grid_.problems();
   grid_.for_each_line(0, [&](std::size_t first, std::size_t count) {
     for (std::size_t box = first; box < first + count; ++box) {
       grid_.problems()[box] = without_contact_[box];

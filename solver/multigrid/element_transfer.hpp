@@ -51,7 +51,7 @@ class ElementTransfer {
   std::vector<Grid::Location> places_;  // of rows
   std::vector<std::size_t> boxes_;      // of cells
   std::vector<Contents> contents_;
-  std::vector<BoxProblem> without_contact_;  // empty if there is none
+  std::vector<BoxProblem> without_contact_;      // empty if there has been none since `gather`
   std::vector<std::array<Row<float>, 8>> sums_;  // of the corners of boxes
 };
 

@@ -176,7 +176,7 @@ void Equilibrium<Real>::update_contact() {
   if (++contact_.updates > most_updates) return;
   progress_ = {contact_.norm};
   acceleration_.clear();
-  if (is_healthy(body())) mixed_.linearize();
+  mixed_.linearize_contact();
 }
 
 /// Moves to where the steps so far predict the smallest residual, and on by a multigrid cycle; shorter while
@@ -187,7 +187,8 @@ bool Equilibrium<Real>::linearized_step() {
   norms_.push_back(norm);
   if (!std::isfinite(norm) || norm > 1e3 * norms_.front()) return false;
   const bool far = norms_.size() % steps_between_updates == 0 && norm > close_enough * norms_.front();
-  if ((mixed_.contact_changed() || far) && is_healthy(body())) mixed_.linearize();
+  if (far && is_healthy(body())) mixed_.linearize();
+  mixed_.linearize_contact();
   reduced_ = mixed_.residuals();
   step_ = reduced_;
   acceleration_.combine(reduced_, step_);

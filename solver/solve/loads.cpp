@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace sandglass {
 
@@ -13,10 +14,12 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
       pushes_(std::ranges::any_of(contacts_, [](const auto* one) { return !one->moves_nodes(); })),
       ranks_(layout.team.ranks),
       place_of_node_(scene.mesh.points.size(), -1),
-      all_dead_(std::ranges::all_of(scene.forces, [](const auto& force) {
-        const auto* contact = dynamic_cast<const ContactForce*>(force.get());
-        return contact != nullptr ? contact->moves_nodes() : !force->dead_loads().empty();
-      })),
+      all_dead_(std::ranges::all_of(scene.forces,
+                                    [](const auto& force) {
+                                      const auto* contact = dynamic_cast<const ContactForce*>(force.get());
+                                      return contact != nullptr ? contact->moves_nodes()
+                                                                : !force->dead_loads().empty();
+                                    })),
       factors_(factors_at(0.0, 0.0)),
       movable_(movable_of(scene.forces)) {
   std::vector<bool> moves(place_of_node_.size());
@@ -102,19 +105,23 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
   for (const auto* one : loads_) one->add_forces(factors_, motion, by_node(forces_.data()));
   // Dead forces are known on all ranks, others on ranks that know the displacements.
   if (!all_dead_) gather({numbers_of(forces_), 4 * rows_.size()});
-  square_ = 0.0;
+  Row<double> squares{};  // a sum of its own for each component, as additions wait for one another
   const auto take_off = [&](std::size_t k, const Row<double>& one) {
     for (std::size_t i = 0; i < 3; ++i) {
       force[rows_[k]][i] -= static_cast<Real>(one[i]);
-      square_ += one[i] * one[i];
+      squares[i] += one[i] * one[i];
     }
   };
   for (std::size_t k = 0; k < rows_.size(); ++k) take_off(k, forces_[k]);
-  if (!pushes_) return;
-  for (const std::size_t k : moving_) touching_[k] = {};
-  for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c]->add_contact(factors_, motion.u, memory_.data() + memory_of_[c], by_node(touching_.data()));
-  for (const std::size_t k : moving_) take_off(k, touching_[k]);
+  if (pushes_) {
+    for (const std::size_t k : moving_) touching_[k] = {};
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      contacts_[c]->add_contact(factors_, motion.u, memory_.data() + memory_of_[c],
+                                by_node(touching_.data()));
+    }
+    for (const std::size_t k : moving_) take_off(k, touching_[k]);
+  }
+  square_ = squares[0] + squares[1] + squares[2];
 }
 
 template <class Real>
@@ -199,7 +206,8 @@ void Loads<Real>::slide(const Rows<Real>& before, Rows<Real>& u) const {
   take(before, from);
   take(u, to);
   for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c]->slide(factors_, by_node(from.data()), memory_.data() + memory_of_[c], by_node(to.data()));
+    contacts_[c]->slide(factors_, by_node(std::as_const(from).data()), memory_.data() + memory_of_[c],
+                        by_node(to.data()));
   for (const std::size_t k : moving_) {
     for (std::size_t i = 0; i < 3; ++i) u[rows_[k]][i] = static_cast<Real>(to[k][i]);
   }
@@ -232,15 +240,15 @@ void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots)
   take(u, there);
   Rows<float> own(rows_.size());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    contacts_[c]->set_contact_stiffness(factors_, by_node(there.data()), memory_.data() + memory_of_[c],
-                                        by_node(own.data()));
+    contacts_[c]->set_contact_stiffness(factors_, by_node(std::as_const(there).data()),
+                                        memory_.data() + memory_of_[c], by_node(own.data()));
   }
   for (const std::size_t k : moving_) roots[rows_[k]] = own[k];
 }
 
 template <class Real>
 void Loads<Real>::gather(std::span<double> values) const {
-  if (owned_.empty()) return;
+  if (owned_.empty() || ranks_->count() == 1) return;
   const std::size_t each = values.size() / owned_.size();
   for (std::size_t n = 0; n < values.size(); ++n) {
     if (!owned_[n / each]) values[n] = 0.0;
