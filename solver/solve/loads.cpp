@@ -22,21 +22,24 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
                                     })),
       factors_(factors_at(0.0, 0.0)),
       movable_(movable_of(scene.forces)) {
-  std::vector<bool> moves(place_of_node_.size());
-  for (const auto& force : scene.forces) {
-    for (const int node : force->nodes()) {
-      place_of_node_[at(node)] = 0;
-      if (force->dead_loads().empty()) moves[at(node)] = true;
+  const auto place_nodes = [&](bool dead) {
+    std::vector<bool> loaded(place_of_node_.size());
+    for (const auto& force : scene.forces) {
+      if (force->dead_loads().empty() == dead) continue;
+      for (const int node : force->nodes()) loaded[at(node)] = place_of_node_[at(node)] < 0;
     }
-  }
-  for (std::size_t n = 0; n < place_of_node_.size(); ++n) {
-    if (place_of_node_[n] < 0) continue;
-    place_of_node_[n] = static_cast<int>(rows_.size());
-    if (moves[n]) moving_.push_back(rows_.size());
-    rows_.push_back(at(layout.row_of_node[n]));
-    owned_.push_back(layout.owns(static_cast<int>(n)));
-  }
-  u_ = increment_ = forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
+    for (std::size_t n = 0; n < loaded.size(); ++n) {
+      if (!loaded[n]) continue;
+      place_of_node_[n] = static_cast<int>(rows_.size());
+      rows_.push_back(at(layout.row_of_node[n]));
+      owned_.push_back(layout.owns(static_cast<int>(n)));
+    }
+  };
+  place_nodes(false);
+  u_ = increment_ = Rows<double>(rows_.size());
+  if (!contacts_.empty()) touching_ = masses_ = u_;
+  place_nodes(true);
+  forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
   for (const auto& force : scene.forces) {
     if (std::ranges::find(contacts_, force.get()) == contacts_.end()) loads_.push_back(force.get());
   }
@@ -46,7 +49,6 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     remembered += contact->memory();
   }
   memory_ = memory_before_ = Rows<double>(remembered);
-  if (!contacts_.empty()) touching_ = masses_ = u_;
   work_.resize(rows_.size());
 }
 
@@ -79,15 +81,13 @@ void Loads<Real>::move_obstacles(std::span<const double> moves) {
 template <class Real>
 Rows<double> Loads<Real>::loaded(const Rows<Real>& all) const {
   Rows<double> rows(rows_.size());
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    for (std::size_t i = 0; i < 3; ++i) rows[k][i] = static_cast<double>(all[rows_[k]][i]);
-  }
+  take(all, rows);
   return rows;
 }
 
 template <class Real>
 void Loads<Real>::take(const Rows<Real>& all, Rows<double>& loaded) const {
-  for (const std::size_t k : moving_) {
+  for (std::size_t k = 0; k < loaded.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) loaded[k][i] = static_cast<double>(all[rows_[k]][i]);
   }
 }
@@ -114,12 +114,12 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
   };
   for (std::size_t k = 0; k < rows_.size(); ++k) take_off(k, forces_[k]);
   if (pushes_) {
-    for (const std::size_t k : moving_) touching_[k] = {};
+    std::fill(touching_.begin(), touching_.end(), Row<double>{});
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       contacts_[c]->add_contact(factors_, motion.u, memory_.data() + memory_of_[c],
                                 by_node(touching_.data()));
     }
-    for (const std::size_t k : moving_) take_off(k, touching_[k]);
+    for (std::size_t k = 0; k < touching_.size(); ++k) take_off(k, touching_[k]);
   }
   square_ = squares[0] + squares[1] + squares[2];
 }
@@ -154,7 +154,7 @@ bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses,
     contacts_[c]->push_out(factors_, {by_node(u_.data()), by_node(increment_.data()), by_node(masses.data()),
                                       gain, memory_.data() + memory_of_[c]});
   }
-  for (const std::size_t k : moving_) {
+  for (std::size_t k = 0; k < u_.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
       state.u[rows_[k]][i] = static_cast<Real>(u_[k][i]);
       state.increment[rows_[k]][i] = static_cast<Real>(increment_[k][i]);
@@ -202,13 +202,13 @@ double Loads<Real>::potential(const Rows<Real>& u) const {
 template <class Real>
 void Loads<Real>::slide(const Rows<Real>& before, Rows<Real>& u) const {
   if (contacts_.empty()) return;
-  Rows<double> from(rows_.size()), to(rows_.size());
+  Rows<double> from(u_.size()), to(u_.size());
   take(before, from);
   take(u, to);
   for (std::size_t c = 0; c < contacts_.size(); ++c)
     contacts_[c]->slide(factors_, by_node(std::as_const(from).data()), memory_.data() + memory_of_[c],
                         by_node(to.data()));
-  for (const std::size_t k : moving_) {
+  for (std::size_t k = 0; k < to.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) u[rows_[k]][i] = static_cast<Real>(to[k][i]);
   }
 }
@@ -236,14 +236,14 @@ void Loads<Real>::correct_contact() {
 
 template <class Real>
 void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const {
-  Rows<double> there(rows_.size());
+  Rows<double> there(u_.size());
   take(u, there);
-  Rows<float> own(rows_.size());
+  Rows<float> own(u_.size());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     contacts_[c]->set_contact_stiffness(factors_, by_node(std::as_const(there).data()),
                                         memory_.data() + memory_of_[c], by_node(own.data()));
   }
-  for (const std::size_t k : moving_) roots[rows_[k]] = own[k];
+  for (std::size_t k = 0; k < own.size(); ++k) roots[rows_[k]] = own[k];
 }
 
 template <class Real>
