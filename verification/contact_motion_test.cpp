@@ -309,6 +309,42 @@ damping = 15.0
   EXPECT_NEAR(last.reactions.at("rod")[0], -last.reactions.at("base")[0], 1e-3);
 }
 
+/// A plane jumps between afar and within the body in single steps: no node stays inside, however far from it
+/// the last distance was computed. The body is freed and vibrates in between.
+TEST(KinematicContact, finds_nodes_from_wherever_it_comes) {
+  Column block({1.0, 1.0, 0.5}, {4, 4, 2}, NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.4});
+  block.description.quasi_static = false;
+  block.description.displacements = {{"foot", {}}};
+  Obstacle plate = ceiling(0.5, 0.0);
+  plate.method = Obstacle::Method::kinematic;
+  block.description.forces.of<Obstacle>() = {plate};
+  const Scene scene = block.scene();
+  const Model model(scene, {"tl-perturbation"});
+  Leapfrog<double> leapfrog(model, double_elements(model), 20.0);
+  const double step = 0.5 * leapfrog.stable_step(model).step;
+  std::vector<double> targets(scene.constraints.size() + 3, 0.0);  // the last is the height of the plate
+  double& height = targets.back();
+  const auto highest = [&] {
+    const NodalField u = leapfrog.body().field(leapfrog.body().state().u);
+    double z = -INFINITY;
+    for (const int node : block.sets.at("top")) z = std::max(z, u[at(node)][2]);
+    return z;
+  };
+  RandomGeometry random(47);
+  int touched = 0, apart = 0;
+  for (int n = 0; n < 2000; ++n) {
+    constexpr double deepest = 2e-3;
+    const double choice = random.uniform(0.0, 1.0), top = highest();
+    if (choice > 0.8) height = top + random.uniform(0.0, 0.5);
+    if (choice < 0.2) height = top - random.uniform(0.0, deepest);
+    leapfrog.advance(step, [&](Body<double>& body) { body.impose(targets, 1.0, n * step); });
+    ASSERT_LE(highest(), height + 1e-14);
+    ++(leapfrog.body().touch("plate")->force[2] < 0.0 ? touched : apart);
+  }
+  EXPECT_GT(touched, 400);
+  EXPECT_GT(apart, 400);
+}
+
 /// Bodies are pressed at random: by every shape, at speeds up to a tenth of the shear wave's, with friction
 /// and without, by both methods, up to Poisson's ratio 0.49. Nothing is pushed through, and no energy is
 /// gained.

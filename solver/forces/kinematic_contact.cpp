@@ -10,7 +10,9 @@ namespace {
 constexpr std::string_view in_steps = "it moves nodes within time steps";
 
 /// A row for the position (m) of the obstacle at the end of the last step, one for its motion in it, and for
-/// each node one for its motion in it relative to the obstacle and one for the normal at its end.
+/// each node one for its motion in it relative to the obstacle, and one for what is known of the gap: the
+/// normal at the end of the step, or, of a node outside, the place in the frame of the obstacle where its
+/// distance was last computed, and the distance (m). Nearer to that place than this, it is still outside.
 class KinematicContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
@@ -25,19 +27,24 @@ class KinematicContact final : public ObstacleContact {
     const Vector of_obstacle = difference(moved, {position[0], position[1], position[2]});
     memory.clear_forces();
     const double half = half_thickness();
-    for_each_gap(moved, nodes.u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+    for_each_node(moved, nodes.u, [&](std::size_t k, const Vector& x, const auto& compute_gap) {
       const int node = nodes_[k].node;
-      Row<double>&last = memory.others[own + 2 * k], &last_normal = memory.others[own + 2 * k + 1];
+      Row<double>&last = memory.others[own + 2 * k], &known = memory.others[own + 2 * k + 1];
       Row<double>& increment = nodes.increment[node];
       Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
-      if (position[3] == 0.0) {
-        last = {{0.5 * motion[0], 0.5 * motion[1], 0.5 * motion[2], 0.0}};  // its force acts for half a step
-        last_normal = row_of(gap_at(difference(x, motion)).normal);
+      if (is_outside(x, known)) {
+        last = row_of(motion);
+        return;
       }
+      const bool first = position[3] == 0.0;
+      if (first) last = row_of(sum({}, 0.5, motion));  // its force acts for half a step
+      const Gap gap = compute_gap();
       if (gap.distance < -deep * half || leaps(gap, x, motion, half)) memory.note_passed(node);
       if (gap.distance < 0.0) {
+        const Vector start = first || known[3] > 0.0 ? gap_at(difference(x, motion)).normal
+                                                     : Vector{known[0], known[1], known[2]};
         const Row<double>& w = nodes.inverse_masses[node];
-        const Vector change = correction(gap, direction(gap, last_normal), motion, w);
+        const Vector change = correction(gap, direction(gap, start), motion, w);
         motion = sum(motion, 1.0, change);
         Vector force{};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -51,7 +58,7 @@ class KinematicContact final : public ObstacleContact {
         memory.add_force(force, difference(sum(x, 1.0, change), obstacle_.point));
       }
       last = row_of(motion);
-      last_normal = row_of(gap.normal);
+      known = gap.distance > 0.0 ? Row<double>{{x[0], x[1], x[2], gap.distance}} : row_of(gap.normal);
     });
     position = {{moved[0], moved[1], moved[2], 1.0}};
     last_of_obstacle = row_of(of_obstacle);
@@ -80,6 +87,13 @@ class KinematicContact final : public ObstacleContact {
  private:
   static constexpr std::size_t own = 2;
 
+  /// No distance changes by more than a point moves.
+  static bool is_outside(const Vector& x, const Row<double>& known) {
+    double square = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) square += (x[i] - known[i]) * (x[i] - known[i]);
+    return square < known[3] * known[3];
+  }
+
   static Row<double> row_of(const Vector& v) { return {{v[0], v[1], v[2], 0.0}}; }
 
   std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
@@ -101,10 +115,9 @@ class KinematicContact final : public ObstacleContact {
   /// The direction of the force on a node: the normal where the step starts, as forces act there. Over the
   /// steps before and after it, a node that slides along a curve moves at right angles to it: the normal at
   /// the end would push it on with every step. Across an edge of the obstacle only the latter is of use.
-  static Vector direction(const Gap& end, const Row<double>& start) {
+  static Vector direction(const Gap& end, const Vector& start) {
     constexpr double least_cosine = 0.5;
-    const Vector normal{start[0], start[1], start[2]};
-    return dot(normal, end.normal) < least_cosine ? end.normal : normal;
+    return dot(start, end.normal) < least_cosine ? end.normal : start;
   }
 
   /// The change (m) of the motion of a node in a step that brings it to the surface along a direction, with

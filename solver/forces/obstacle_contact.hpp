@@ -77,19 +77,27 @@ class ObstacleContact : public ContactForce {
     return sum({moves[0], moves[1], moves[2]}, factors[curves_.path], obstacle_.displacement);
   }
 
-  /// Calls use(k, x, gap) for all nodes, with the position x (m) in the frame of the obstacle.
+  /// Calls use(k, x, compute_gap) for all nodes, with the position x (m) in the frame of the obstacle.
   template <class Rows, class Use>
-  void for_each_gap(const Vector& moved, const Rows& u, const Use& use) const {
+  void for_each_node(const Vector& moved, const Rows& u, const Use& use) const {
     std::visit(
         [&](const auto& shape) {
           for (std::size_t k = 0; k < nodes_.size(); ++k) {
             const Row<double>& of_node = u[nodes_[k].node];
             Vector x = nodes_[k].X;
             for (std::size_t i = 0; i < 3; ++i) x[i] += of_node[i] - moved[i];
-            use(k, x, facing_body(shape.at(x)));
+            use(k, x, [&] { return facing_body(shape.at(x)); });
           }
         },
         shape_);
+  }
+
+  /// Calls use(k, x, gap) for all nodes.
+  template <class Rows, class Use>
+  void for_each_gap(const Vector& moved, const Rows& u, const Use& use) const {
+    for_each_node(moved, u, [&](std::size_t k, const Vector& x, const auto& compute_gap) {
+      use(k, x, compute_gap());
+    });
   }
 
   /// At a position (m) in its frame.

@@ -70,7 +70,8 @@ class Elements final : public ElementLevel {
     }
     layout_.gather_rows(stiffness_.data());
     layout_.gather_cells(tangents_.data());
-    set_smoother(stiffness_, largest_of_all(*std::ranges::max_element(bounds)));
+    bound_ = largest_of_all(*std::ranges::max_element(bounds));
+    update_contact();
   }
 
   void apply(const MixedVector& x, MixedVector& y) const override {

@@ -55,13 +55,17 @@ class ElementLevel : public SaddleLevel {
   /// The stiffness of springs that hold the rows, N/m; empty without any.
   const Rows<float>& springs() const { return springs_; }
 
-  /// Sets these springs: the direction times the root of the stiffness, root of N/m. `update` must follow.
+  /// Sets springs of contact: the direction times the root of the stiffness, root of N/m. `update` or
+  /// `update_contact` must follow.
   void set_contact(const Rows<float>& roots) {
     contact_ = roots;
     touching_.clear();
     for (std::size_t row = 0; row < roots.size(); ++row)
       if (roots[row].x != Row<float>{}.x) touching_.push_back(row);
   }
+
+  /// Takes the springs of contact in the configuration of the last `update`.
+  void update_contact() { set_smoother(stiffness_, bound_); }
 
   /// The diagonal of A on constrained components too, N/m, of all ranks.
   const Rows<float>& stiffness() const { return stiffness_; }
@@ -78,6 +82,7 @@ class ElementLevel : public SaddleLevel {
   std::vector<ElementTangent> tangents_;
   Rows<float> springs_;
   Rows<float> stiffness_;
+  float bound_ = 1.0f;  // of the eigenvalues of the inverse of its diagonal times A
 };
 
 /// For the rows and the lanes of a layout. `free` is 1, or 0 on constrained components, tied nodes and spare

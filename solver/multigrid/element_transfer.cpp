@@ -130,6 +130,18 @@ void ElementTransfer::gather() {
       grid_.problems()[box] = problem_of(contents_[box]);
     }
   });
+  without_contact_.clear();
+  if (!elements_.contact().empty()) gather_contact();
+}
+
+void ElementTransfer::gather_contact() {
+  if (without_contact_.empty()) without_contact_ = grid_.problems();
+  grid_.for_each_line(0, [&](std::size_t first, std::size_t count) {
+    for (std::size_t box = first; box < first + count; ++box) {
+      grid_.problems()[box] = without_contact_[box];
+      add_contact(contents_[box], grid_.problems()[box]);
+    }
+  });
 }
 
 BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
@@ -172,16 +184,21 @@ BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
         for (std::size_t b = 0; b < 8; ++b) problem.A[24 * (3 * a + i) + 3 * b + i] += k * w[a] * w[b];
       }
     }
-    if (elements_.contact().empty()) continue;
+  }
+  return problem;
+}
+
+void ElementTransfer::add_contact(const Contents& contents, BoxProblem& problem) const {
+  for (const std::uint32_t row : contents.rows) {
     const Row<float>& s = elements_.contact()[row];
     if (s.x == Row<float>{}.x) continue;
     const auto w = weights(places_[row].local);
+    std::array<float, 24> along;
+    for (std::size_t a = 0; a < 24; ++a) along[a] = w[a / 3] * s[a % 3];
     for (std::size_t a = 0; a < 24; ++a) {
-      const float along = w[a / 3] * s[a % 3];
-      for (std::size_t b = 0; b < 24; ++b) problem.A[24 * a + b] += along * w[b / 3] * s[b % 3];
+      for (std::size_t b = 0; b < 24; ++b) problem.A[24 * a + b] += along[a] * along[b];
     }
   }
-  return problem;
 }
 
 void ElementTransfer::restrict_residual(const MixedVector& r, MixedVector& b) {

@@ -17,6 +17,9 @@ class ElementTransfer {
   /// the grid's functions by springs.
   void gather();
 
+  /// Adds springs of contact to the problems of the last `gather`.
+  void gather_contact();
+
   /// b = the residual r of the elements for the grid.
   void restrict_residual(const MixedVector& r, MixedVector& b);
 
@@ -41,12 +44,14 @@ class ElementTransfer {
   std::vector<bool> sparse_boxes(const Mesh& mesh) const;
   void sample(const Mesh& mesh, std::size_t element, float share_at_nodes);
   BoxProblem problem_of(const Contents& contents) const;
+  void add_contact(const Contents& contents, BoxProblem& problem) const;
 
   const ElementLevel& elements_;
   GridLevel& grid_;
   std::vector<Grid::Location> places_;  // of rows
   std::vector<std::size_t> boxes_;      // of cells
   std::vector<Contents> contents_;
+  std::vector<BoxProblem> without_contact_;      // empty if there has been none since `gather`
   std::vector<std::array<Row<float>, 8>> sums_;  // of the corners of boxes
 };
 

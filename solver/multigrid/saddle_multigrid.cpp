@@ -90,6 +90,17 @@ void SaddleMultigrid::update(const Rows<float>& u, const std::vector<ModelModuli
     if (!healthy) stage.level->update(Rows<float>(coarse_u.size()), moduli, coarse_stiffening);
   }
   to_grid_->gather();
+  assemble_grids();
+}
+
+void SaddleMultigrid::update_contact() {
+  elements_->update_contact();
+  for (const MeshStage& stage : meshes_) stage.level->update_contact();
+  to_grid_->gather_contact();
+  assemble_grids();
+}
+
+void SaddleMultigrid::assemble_grids() {
   for (GridStage& stage : grids_) {
     if (stage.to_coarser == nullptr) {
       coarsest_.update(*stage.level);

@@ -23,8 +23,12 @@ class SaddleMultigrid {
   void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
               const std::vector<float>& stiffening);
 
-  /// See ElementLevel::set_contact; nodes of coarser meshes have the same springs. `update` must follow.
+  /// See ElementLevel::set_contact; nodes of coarser meshes have the same springs. `update` or
+  /// `update_contact` must follow.
   void set_contact(const Rows<float>& roots);
+
+  /// Takes these springs in the configuration of the last `update`.
+  void update_contact();
 
   /// x = an approximate solution for b: linear in b and symmetric; positive if pressures are ignored.
   void cycle(const MixedVector& b, MixedVector& x);
@@ -47,6 +51,7 @@ class SaddleMultigrid {
     MixedVector b, x, r;
   };
 
+  void assemble_grids();
   void cycle_mesh(std::size_t stage, ElementLevel& level, const MixedVector& b, MixedVector& x,
                   MixedVector& r);
   void cycle_grid(std::size_t stage);

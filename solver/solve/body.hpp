@@ -131,7 +131,7 @@ class Body {
 
   /// See Loads::set_contact_stiffness.
   void set_contact_stiffness(Rows<float>& roots) const {
-    loads_.set_contact_stiffness(of_all(state_.u), roots);
+    loads_.set_contact_stiffness(state_.u, roots);
   }
 
   /// See Loads::push_out.

@@ -47,10 +47,10 @@ constexpr double most_extended_growth = 10.0;
 /// The nodes that touch obstacles are updated when the norm has fallen to this share. Where that does not
 /// leave fewer nodes whose contact is contrary, the next update waits for a tenth of that, until the share is
 /// the least.
-constexpr double updated_share = 0.1, least_updated_share = 1e-3;
+constexpr double updated_share = 0.3, least_updated_share = 1e-3;
 
 /// They are updated after this many steps at the latest.
-constexpr int steps_between_contacts = 25;
+constexpr int steps_between_contacts = 5;
 
 /// This many updates may fail to leave fewer such nodes; then only one of them is changed at a time, until
 /// they are fewer, which excludes cycles (Portugal, Judice and Vicente 1994).
@@ -176,7 +176,7 @@ void Equilibrium<Real>::update_contact() {
   if (++contact_.updates > most_updates) return;
   progress_ = {contact_.norm};
   acceleration_.clear();
-  if (is_healthy(body())) mixed_.linearize();
+  mixed_.linearize_contact();
 }
 
 /// Moves to where the steps so far predict the smallest residual, and on by a multigrid cycle; shorter while
@@ -187,7 +187,8 @@ bool Equilibrium<Real>::linearized_step() {
   norms_.push_back(norm);
   if (!std::isfinite(norm) || norm > 1e3 * norms_.front()) return false;
   const bool far = norms_.size() % steps_between_updates == 0 && norm > close_enough * norms_.front();
-  if ((mixed_.contact_changed() || far) && is_healthy(body())) mixed_.linearize();
+  if (far && is_healthy(body())) mixed_.linearize();
+  mixed_.linearize_contact();
   reduced_ = mixed_.residuals();
   step_ = reduced_;
   acceleration_.combine(reduced_, step_);

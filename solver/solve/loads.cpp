@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace sandglass {
 
@@ -10,21 +11,35 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     : curves_(scene.curves),
       contacts_(contacts_of(scene.forces)),
       moves_nodes_(std::ranges::any_of(contacts_, [](const auto* one) { return one->moves_nodes(); })),
+      pushes_(std::ranges::any_of(contacts_, [](const auto* one) { return !one->moves_nodes(); })),
       ranks_(layout.team.ranks),
       place_of_node_(scene.mesh.points.size(), -1),
-      all_dead_(first_not_dead(scene.forces) == nullptr),
+      all_dead_(std::ranges::all_of(scene.forces,
+                                    [](const auto& force) {
+                                      const auto* contact = dynamic_cast<const ContactForce*>(force.get());
+                                      return contact != nullptr ? contact->moves_nodes()
+                                                                : !force->dead_loads().empty();
+                                    })),
       factors_(factors_at(0.0, 0.0)),
       movable_(movable_of(scene.forces)) {
-  for (const auto& force : scene.forces) {
-    for (const int node : force->nodes()) place_of_node_[at(node)] = 0;
-  }
-  for (std::size_t n = 0; n < place_of_node_.size(); ++n) {
-    if (place_of_node_[n] < 0) continue;
-    place_of_node_[n] = static_cast<int>(rows_.size());
-    rows_.push_back(at(layout.row_of_node[n]));
-    owned_.push_back(layout.owns(static_cast<int>(n)));
-  }
-  u_ = increment_ = forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
+  const auto place_nodes = [&](bool dead) {
+    std::vector<bool> loaded(place_of_node_.size());
+    for (const auto& force : scene.forces) {
+      if (force->dead_loads().empty() == dead) continue;
+      for (const int node : force->nodes()) loaded[at(node)] = place_of_node_[at(node)] < 0;
+    }
+    for (std::size_t n = 0; n < loaded.size(); ++n) {
+      if (!loaded[n]) continue;
+      place_of_node_[n] = static_cast<int>(rows_.size());
+      rows_.push_back(at(layout.row_of_node[n]));
+      owned_.push_back(layout.owns(static_cast<int>(n)));
+    }
+  };
+  place_nodes(false);
+  u_ = increment_ = Rows<double>(rows_.size());
+  if (!contacts_.empty()) touching_ = masses_ = u_;
+  place_nodes(true);
+  forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
   for (const auto& force : scene.forces) {
     if (std::ranges::find(contacts_, force.get()) == contacts_.end()) loads_.push_back(force.get());
   }
@@ -34,7 +49,6 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     remembered += contact->memory();
   }
   memory_ = memory_before_ = Rows<double>(remembered);
-  if (!contacts_.empty()) touching_ = masses_ = u_;
   work_.resize(rows_.size());
 }
 
@@ -73,15 +87,14 @@ Rows<double> Loads<Real>::loaded(const Rows<Real>& all) const {
 
 template <class Real>
 void Loads<Real>::take(const Rows<Real>& all, Rows<double>& loaded) const {
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
+  for (std::size_t k = 0; k < loaded.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) loaded[k][i] = static_cast<double>(all[rows_[k]][i]);
   }
 }
 
 template <class Real>
 void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
-  const auto moves_nodes = [](const ContactForce* one) { return one->moves_nodes(); };
-  if (loads_.empty() && std::ranges::all_of(contacts_, moves_nodes)) return;  // no forces
+  if (loads_.empty() && !pushes_) return;
   if (!all_dead_) {
     take(state.u, u_);
     take(state.increment, increment_);
@@ -90,22 +103,25 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
   const Rows<double>&u = u_, &increment = increment_;
   const NodalMotion motion{by_node(u.data()), by_node(increment.data()), static_cast<double>(state.step)};
   for (const auto* one : loads_) one->add_forces(factors_, motion, by_node(forces_.data()));
-  std::fill(touching_.begin(), touching_.end(), Row<double>{});
-  for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c]->add_contact(factors_, motion.u, memory_.data() + memory_of_[c], by_node(touching_.data()));
   // Dead forces are known on all ranks, others on ranks that know the displacements.
   if (!all_dead_) gather({numbers_of(forces_), 4 * rows_.size()});
-  square_ = 0.0;
-  const auto take_off = [&](const Rows<double>& all) {
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        force[rows_[k]][i] -= static_cast<Real>(all[k][i]);
-        square_ += all[k][i] * all[k][i];
-      }
+  Row<double> squares{};  // a sum of its own for each component, as additions wait for one another
+  const auto take_off = [&](std::size_t k, const Row<double>& one) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      force[rows_[k]][i] -= static_cast<Real>(one[i]);
+      squares[i] += one[i] * one[i];
     }
   };
-  take_off(forces_);
-  take_off(touching_);
+  for (std::size_t k = 0; k < rows_.size(); ++k) take_off(k, forces_[k]);
+  if (pushes_) {
+    std::fill(touching_.begin(), touching_.end(), Row<double>{});
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      contacts_[c]->add_contact(factors_, motion.u, memory_.data() + memory_of_[c],
+                                by_node(touching_.data()));
+    }
+    for (std::size_t k = 0; k < touching_.size(); ++k) take_off(k, touching_[k]);
+  }
+  square_ = squares[0] + squares[1] + squares[2];
 }
 
 template <class Real>
@@ -138,7 +154,7 @@ bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses,
     contacts_[c]->push_out(factors_, {by_node(u_.data()), by_node(increment_.data()), by_node(masses.data()),
                                       gain, memory_.data() + memory_of_[c]});
   }
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
+  for (std::size_t k = 0; k < u_.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
       state.u[rows_[k]][i] = static_cast<Real>(u_[k][i]);
       state.increment[rows_[k]][i] = static_cast<Real>(increment_[k][i]);
@@ -186,11 +202,13 @@ double Loads<Real>::potential(const Rows<Real>& u) const {
 template <class Real>
 void Loads<Real>::slide(const Rows<Real>& before, Rows<Real>& u) const {
   if (contacts_.empty()) return;
-  const Rows<double> from = loaded(before);
-  Rows<double> to = loaded(u);
+  Rows<double> from(u_.size()), to(u_.size());
+  take(before, from);
+  take(u, to);
   for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c]->slide(factors_, by_node(from.data()), memory_.data() + memory_of_[c], by_node(to.data()));
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    contacts_[c]->slide(factors_, by_node(std::as_const(from).data()), memory_.data() + memory_of_[c],
+                        by_node(to.data()));
+  for (std::size_t k = 0; k < to.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) u[rows_[k]][i] = static_cast<Real>(to[k][i]);
   }
 }
@@ -218,18 +236,19 @@ void Loads<Real>::correct_contact() {
 
 template <class Real>
 void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const {
-  const Rows<double> there = loaded(u);
-  Rows<float> own(rows_.size());
+  Rows<double> there(u_.size());
+  take(u, there);
+  Rows<float> own(u_.size());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    contacts_[c]->set_contact_stiffness(factors_, by_node(there.data()), memory_.data() + memory_of_[c],
-                                        by_node(own.data()));
+    contacts_[c]->set_contact_stiffness(factors_, by_node(std::as_const(there).data()),
+                                        memory_.data() + memory_of_[c], by_node(own.data()));
   }
-  for (std::size_t k = 0; k < rows_.size(); ++k) roots[rows_[k]] = own[k];
+  for (std::size_t k = 0; k < own.size(); ++k) roots[rows_[k]] = own[k];
 }
 
 template <class Real>
 void Loads<Real>::gather(std::span<double> values) const {
-  if (owned_.empty()) return;
+  if (owned_.empty() || ranks_->count() == 1) return;
   const std::size_t each = values.size() / owned_.size();
   for (std::size_t n = 0; n < values.size(); ++n) {
     if (!owned_[n / each]) values[n] = 0.0;

@@ -110,7 +110,7 @@ class Loads {
     return {loaded, place_of_node_};
   }
 
-  /// Sets the values of loaded rows to those of all rows.
+  /// Sets the values of the first loaded rows to those of all rows.
   void take(const Rows<Real>& all, Rows<double>& loaded) const;
   Rows<double> loaded(const Rows<Real>& all) const;
 
@@ -120,19 +120,19 @@ class Loads {
   const std::vector<LoadCurve>& curves_;
   std::vector<const BodyForce*> loads_;  // all except obstacles
   std::vector<const ContactForce*> contacts_;
-  bool moves_nodes_;
+  bool moves_nodes_, pushes_;           // whether any of them moves nodes, or adds forces
   std::vector<std::size_t> memory_of_;  // first row of each
-  std::vector<std::size_t> rows_;       // that carry loads
+  std::vector<std::size_t> rows_;       // that carry loads: first those whose loads are not all dead
   std::vector<bool> owned_;             // by this rank, of these
   std::shared_ptr<const Ranks> ranks_;
   std::vector<int> place_of_node_;       // among the loaded rows; -1 for others
-  bool all_dead_;                        // no force depends on the motion of the body
+  bool all_dead_;                        // no force depends on the motion, except by moving nodes
   std::vector<double> factors_;          // of curves
   std::vector<Movable> movable_;         // obstacles
-  Rows<double> u_, increment_;           // m, of loaded rows; zero where all are dead
+  Rows<double> u_, increment_;           // m, of the first rows, on which they may depend
   Rows<double> forces_;                  // N, of loaded rows, except those of obstacles
-  Rows<double> touching_;                // N, those; empty without any
-  Rows<double> masses_;                  // 1/kg, inverse, of loaded rows; empty without obstacles
+  Rows<double> touching_;                // N, those, of the first rows; empty without any
+  Rows<double> masses_;                  // 1/kg, inverse, of the first rows; empty without obstacles
   Rows<double> memory_, memory_before_;  // of contacts
   double work_of_obstacles_ = 0.0;       // J
   Rows<double> forces_before_, u_before_;

@@ -103,12 +103,15 @@ bool MixedBody<Real>::contact_changed() {
 }
 
 template <class Real>
+void MixedBody<Real>::linearize_contact() {
+  if (!contact_changed()) return;
+  contact_ = contact_now_;
+  multigrid_.set_contact(contact_);
+  if (linearized_) multigrid_.update_contact();
+}
+
+template <class Real>
 void MixedBody<Real>::linearize(double penalty) {
-  const bool touches_elsewhere = contact_changed();
-  if (touches_elsewhere) {
-    contact_ = contact_now_;
-    multigrid_.set_contact(contact_);
-  }
   Rows<float> u = linear_ ? Rows<float>(free_.size()) : rounded_rows<float>(body_.state().u);
   if (penalty == linearized_penalty_) {
     if (!linearized_) update_multigrid();
@@ -116,10 +119,12 @@ void MixedBody<Real>::linearize(double penalty) {
     for (std::size_t row = 0; row < change.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) change[row][i] -= linearized_at_[row][i];
     }
-    if (multigrid_.elements().largest_gradient(change) < hardly_changed && !touches_elsewhere) return;
+    if (multigrid_.elements().largest_gradient(change) < hardly_changed) return linearize_contact();
   }
   linearized_at_ = std::move(u);
   linearized_penalty_ = penalty;
+  linearized_ = false;
+  linearize_contact();
   update_multigrid();
 }
 

@@ -44,8 +44,8 @@ class MixedBody {
   /// time; no element may be inverted.
   void linearize() { linearize(INFINITY); }
 
-  /// Whether nodes have touched obstacles, or left them, since the last time.
-  bool contact_changed();
+  /// Adapts it only to the nodes that touch obstacles now, unless they are the same as the last time.
+  void linearize_contact();
 
   /// The same with the resistance to volume changes of multipliers with this penalty.
   void linearize(double penalty);
@@ -156,6 +156,9 @@ class MixedBody {
   }
   void evaluate_forces();
   void update_multigrid();
+
+  /// Whether nodes have touched obstacles, or left them, since the last linearization.
+  bool contact_changed();
   void slide();
 
   /// The sum over all components of a term of the stiffness (N/m) and the displacement (m).
