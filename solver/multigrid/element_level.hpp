@@ -55,14 +55,6 @@ class ElementLevel : public SaddleLevel {
   /// The stiffness of springs that hold the rows, N/m; empty without any.
   const Rows<float>& springs() const { return springs_; }
 
-  /// Sets these springs: the direction times the root of the stiffness, root of N/m. `update` must follow.
-  void set_contact(const Rows<float>& roots) {
-    contact_ = roots;
-    touching_.clear();
-    for (std::size_t row = 0; row < roots.size(); ++row)
-      if (roots[row].x != Row<float>{}.x) touching_.push_back(row);
-  }
-
   /// The diagonal of A on constrained components too, N/m, of all ranks.
   const Rows<float>& stiffness() const { return stiffness_; }
 

@@ -172,13 +172,15 @@ BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
         for (std::size_t b = 0; b < 8; ++b) problem.A[24 * (3 * a + i) + 3 * b + i] += k * w[a] * w[b];
       }
     }
-    if (elements_.contact().empty()) continue;
-    const Row<float>& s = elements_.contact()[row];
-    if (s.x == Row<float>{}.x) continue;
+    const auto& touching = elements_.touching();
+    const auto found = std::ranges::lower_bound(touching, row, {}, &SaddleLevel::Touching::row);
+    if (found == touching.end() || found->row != row) continue;
     const auto w = weights(places_[row].local);
     for (std::size_t a = 0; a < 24; ++a) {
-      const float along = w[a / 3] * s[a % 3];
-      for (std::size_t b = 0; b < 24; ++b) problem.A[24 * a + b] += along * w[b / 3] * s[b % 3];
+      for (std::size_t b = 0; b < 24; ++b) {
+        const int i = static_cast<int>(a % 3), j = static_cast<int>(b % 3);
+        problem.A[24 * a + b] += w[a / 3] * w[b / 3] * found->ground(i, j);
+      }
     }
   }
   return problem;

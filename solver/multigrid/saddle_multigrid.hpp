@@ -23,8 +23,9 @@ class SaddleMultigrid {
   void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
               const std::vector<float>& stiffening);
 
-  /// See ElementLevel::set_contact; nodes of coarser meshes have the same springs. `update` must follow.
-  void set_contact(const Rows<float>& roots);
+  /// See SaddleLevel::set_contact. Coarser meshes have the springs to the ground of their nodes, and no others.
+  /// On grids, nodes at one place move together, as those do that springs connect. `update` must follow.
+  void set_contact(const std::vector<Spring>& springs);
 
   /// x = an approximate solution for b: linear in b and symmetric; positive if pressures are ignored.
   void cycle(const MixedVector& b, MixedVector& x);

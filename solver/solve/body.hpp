@@ -118,9 +118,9 @@ class Body {
   /// See Loads::correct_contact.
   void correct_contact() { loads_.correct_contact(); }
 
-  /// See Loads::set_contact_stiffness.
-  void set_contact_stiffness(Rows<float>& roots) const {
-    loads_.set_contact_stiffness(of_all(state_.u), roots);
+  /// See Loads::springs_of_contact.
+  std::vector<Spring> springs_of_contact() const {
+    return loads_.springs_of_contact(of_all(state_.u));
   }
 
   /// See Loads::push_out.

@@ -217,14 +217,16 @@ void Loads<Real>::correct_contact() {
 }
 
 template <class Real>
-void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const {
+std::vector<Spring> Loads<Real>::springs_of_contact(const Rows<Real>& u) const {
   const Rows<double> there = loaded(u);
-  Rows<float> own(rows_.size());
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    contacts_[c]->set_contact_stiffness(factors_, by_node(there.data()), memory_.data() + memory_of_[c],
-                                        by_node(own.data()));
+  std::vector<Spring> springs;
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->add_springs(factors_, by_node(there.data()), memory_.data() + memory_of_[c], springs);
+  for (Spring& spring : springs) {
+    for (std::size_t n = 0; n < spring.size; ++n)
+      spring.nodes[n] = static_cast<int>(rows_[at(place_of_node_[at(spring.nodes[n])])]);
   }
-  for (std::size_t k = 0; k < rows_.size(); ++k) roots[rows_[k]] = own[k];
+  return springs;
 }
 
 template <class Real>

@@ -59,8 +59,8 @@ class Loads {
   /// Changes one node of all obstacles; see ContactForce::correct_contact.
   void correct_contact();
 
-  /// Sets `roots` (by row) to the stiffness of obstacles; see ContactForce::set_contact_stiffness.
-  void set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const;
+  /// The springs of contact by row; see ContactForce::add_springs.
+  std::vector<Spring> springs_of_contact(const Rows<Real>& u) const;
 
   /// Calls use(touch) with how the body touched each obstacle at the last evaluation.
   template <class Use>
