@@ -4,9 +4,12 @@ namespace sandglass {
 
 namespace {
 
-/// By how much of its height a triangle extends beyond its edges. Points keep their triangle that far, so that
-/// none changes to and fro along an edge.
+/// By how much of its height a triangle extends beyond its edges. Points keep their triangle that far, so
+/// that none changes to and fro along an edge.
 constexpr double overhang = 0.1;
+
+/// At rest no step is limited by the stiffness.
+constexpr double stiffer_at_rest = 30.0;
 
 /// Points that just fit are linearized as touching, up to this share of the shortest edge.
 constexpr double just_fits = 1e-6;
@@ -80,12 +83,11 @@ class RestingPair final : public SurfacePair {
     const std::vector<int> first(at(*std::ranges::max_element(nodes())) + 1, 0);
     Rows<double> rows(memory());
     ContactMemory memory(rows.data());
-    for_each_resting(NodalRows(undeformed.data(), first), memory, just_fits * given_.reach,
-                     [&](const Resting& one) {
-                       Hold& hold = holds.emplace_back(Hold{{}, one.plane.normal});
-                       for_each_node(
-                           one, [&](int node, double weight) { hold.mean_of.push_back({node, weight}); });
-                     });
+    for_each_resting(
+        NodalRows(undeformed.data(), first), memory, just_fits * given_.reach, [&](const Resting& one) {
+          Hold& hold = holds.emplace_back(Hold{{}, one.plane.normal});
+          for_each_node(one, [&](int node, double weight) { hold.mean_of.push_back({node, weight}); });
+        });
   }
 
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
@@ -134,7 +136,7 @@ class RestingPair final : public SurfacePair {
   };
 
   double stiffness_of(const Side& side, std::size_t k) const {
-    return 0.5 * given_.stiffness * surfaces_[side.from].points()[k].area;
+    return 0.5 * stiffer_at_rest * given_.stiffness * surfaces_[side.from].points()[k].area;
   }
 
   /// Calls use(side, k, of_point) for all points.
@@ -158,8 +160,8 @@ class RestingPair final : public SurfacePair {
     for (std::size_t I = 0; I < 4; ++I) use(onto.nodes()[at(corners[I])], -one.plane.weights[I]);
   }
 
-  /// Calls use(resting) for all points that touch at displacements u (m), or whose contact is fixed. Points up
-  /// to a margin (m) outside touch, too.
+  /// Calls use(resting) for all points that touch at displacements u (m), or whose contact is fixed. Points
+  /// up to a margin (m) outside touch, too.
   template <class Use>
   void for_each_resting(NodalRows u, ContactMemory& memory, double margin, const Use& use) const {
     const double range = std::max(given_.reach, move(u, memory).largest_relative()),
@@ -181,8 +183,7 @@ class RestingPair final : public SurfacePair {
       if (touched) plane = onto.plane_at(face, of_face, x, of_onto);
       bool inside = touched && plane.gap <= farthest, moved = false;
       if (!touched || plane.least < -overhang) {
-        for (std::size_t s = 0; s < surfaces_.size() && !fits; ++s)
-          surfaces_[s].fit(of_surface(memory, s));
+        for (std::size_t s = 0; s < surfaces_.size() && !fits; ++s) surfaces_[s].fit(of_surface(memory, s));
         fits = true;
         const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), range,
                                               side.neighbours[k], of_onto);

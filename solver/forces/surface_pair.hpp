@@ -172,8 +172,8 @@ std::shared_ptr<SurfacePair> make_penalty_pair(const Contact& contact, SurfacesO
 std::shared_ptr<SurfacePair> make_kinematic_pair(const Contact& contact, SurfacesOfPair given,
                                                  const NodalField& points, std::span<const Hexahedron> cells);
 
-/// At rest: without friction, between two surfaces. Points that touch are pushed along the normal of a triangle
-/// of the face.
+/// At rest: without friction, between two surfaces. Points that touch are pushed along the normal of a
+/// triangle of the face.
 std::shared_ptr<const BodyForce> make_resting_pair(const SurfacePair& pair);
 
 /// By the method of the contact.

@@ -9,8 +9,8 @@
 
 namespace sandglass {
 
-/// L with L L^T = K, lower triangular, of a symmetric K without negative eigenvalues. Pivots are at least 1e-6
-/// of the diagonal: less is rounding.
+/// L with L L^T = K, lower triangular, of a symmetric K without negative eigenvalues. Pivots are at least
+/// 1e-6 of the diagonal: less is rounding.
 Tensor<float> cholesky(const Tensor<float>& K);
 
 /// One level of a multigrid method for the saddle-point problem of a nearly incompressible body,
@@ -57,7 +57,7 @@ class SaddleLevel {
   /// inverse of D^-1 + K, scaled as D.
   Tensor<float> relaxation(std::size_t row) const;
 
-  /// Sets the springs of contact, by row. An update must follow.
+  /// Sets the springs of contact, by row; an update must follow.
   void set_contact(const std::vector<Spring>& springs);
 
   /// Adds a share of D f (m), f in N, to displacements u (m).
@@ -66,10 +66,12 @@ class SaddleLevel {
   /// A row with springs of contact.
   struct Touching {
     std::size_t row;
-    Tensor<float> ground;    // stiffness of those to the ground, N/m
-    Tensor<float> stiffness; // an upper bound of that of all, N/m
-    Tensor<float> change;    // what they add to D, m/N
+    Tensor<float> ground;     // stiffness of those to the ground, N/m
+    Tensor<float> stiffness;  // an upper bound of that of all, N/m
+    Tensor<float> change;     // what they add to D, m/N
   };
+
+  /// These rows, in ascending order.
   const std::vector<Touching>& touching() const { return touching_; }
 
   /// The diagonal of D (m/N) without springs of contact.
@@ -94,7 +96,7 @@ class SaddleLevel {
 
   MixedBlocks blocks_;
   Rows<float> free_;
-  std::vector<float> compliance_;  // C
+  std::vector<float> compliance_;   // C
   std::vector<Spring> contact_;     // springs of contact
   std::vector<Touching> touching_;  // in ascending order
 
@@ -108,7 +110,7 @@ class SaddleLevel {
   MixedVector y_;             // scratch
   Rows<float> t_;
   std::vector<float> r_, change_, sum_;
-  Rows<float> touching_forces_;
+  Rows<float> touching_forces_;  // scratch
 };
 
 }  // namespace sandglass

@@ -23,8 +23,9 @@ class SaddleMultigrid {
   void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
               const std::vector<float>& stiffening);
 
-  /// See SaddleLevel::set_contact. Coarser meshes have the springs to the ground of their nodes, and no others.
-  /// On grids, nodes at one place move together, as those do that springs connect. `update` must follow.
+  /// See SaddleLevel::set_contact. Coarser meshes have the springs to the ground of their nodes, and no
+  /// others. On grids, nodes at one place move together, as those do that springs connect. `update` must
+  /// follow.
   void set_contact(const std::vector<Spring>& springs);
 
   /// x = an approximate solution for b: linear in b and symmetric; positive if pressures are ignored.

@@ -59,25 +59,6 @@ constexpr int most_failed_updates = 3;
 /// Further updates do not count as progress.
 constexpr int most_updates = 100;
 
-/// How far surfaces that may touch move relative to each other in the prediction of a level, as a share of
-/// the depth up to which they find each other.
-constexpr double most_of_reach = 0.5;
-
-/// The factor by which a change (m) may be scaled until the surfaces of a pair move that far. Obstacles limit
-/// the levels themselves.
-double share_of_reach(const ContactForce& contact, const Rows<float>& change, const Layout& layout) {
-  if (contact.movable()) return INFINITY;
-  Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-  for (const int node : contact.nodes()) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto along = static_cast<double>(change[at(layout.row_of_node[at(node)])][i]);
-      low[i] = std::min(low[i], along);
-      high[i] = std::max(high[i], along);
-    }
-  }
-  return most_of_reach * contact.half_thickness() / length(difference(high, low));
-}
-
 /// A saddle is left by this change of displacement gradients, doubled repeatedly. Directions whose potentials
 /// differ by less than this share of their fall count as equal; the first is taken.
 constexpr double shortest_leap = 1e-3, hardly_lower = 1e-5;
@@ -424,9 +405,8 @@ double Equilibrium<Real>::extend(double load, double most) {
   }
   if (!(norm < most_extended_growth * first)) x = best;  // the cycles diverged
   const double gradient = mixed_.multigrid().elements().largest_gradient(x.u);
-  double share = mixed_.is_linear() ? 1.0 : std::min(1.0, most / gradient);
-  for (const ContactForce* contact : contacts_of(body().scene().forces))
-    share = std::min(share, share_of_reach(*contact, x.u, body().layout()));
+  const double share =
+      std::min(mixed_.is_linear() ? 1.0 : std::min(1.0, most / gradient), body().share_in_reach(x.u));
   const double reached = share < 1.0 ? load_before + share * (load - load_before) : load;
   body().impose(reached);  // where obstacles are, along which it slides
   body().move_to(before);

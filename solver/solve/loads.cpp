@@ -55,7 +55,8 @@ void Loads<Real>::begin_again(const Reactions& forces, const Reactions& moments)
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Row<double>* memory = memory_.data() + memory_of_[c];
     const std::string name(contacts_[c]->touch(memory).name);
-    contacts_[c]->begin_again(forces.at(name), moments.at(name), memory);
+    const auto moment = moments.find(name);  // of obstacles only
+    contacts_[c]->begin_again(forces.at(name), moment == moments.end() ? Vector{} : moment->second, memory);
   }
 }
 
@@ -214,6 +215,24 @@ void Loads<Real>::correct_contact() {
   for (std::size_t c = contacts_.size(); c-- > 0;) {
     if (contacts_[c]->correct_contact(memory_.data() + memory_of_[c])) return;
   }
+}
+
+template <class Real>
+double Loads<Real>::share_in_reach(const Rows<float>& change) const {
+  double share = INFINITY;
+  for (const ContactForce* contact : contacts_) {
+    if (contact->movable()) continue;  // obstacles limit the levels themselves
+    Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    for (const int node : contact->nodes()) {
+      const Row<float>& of_node = change[rows_[at(place_of_node_[at(node)])]];
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], static_cast<double>(of_node[i]));
+        high[i] = std::max(high[i], static_cast<double>(of_node[i]));
+      }
+    }
+    share = std::min(share, 0.5 * contact->half_thickness() / distance(high, low));
+  }
+  return share;
 }
 
 template <class Real>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "assembly/method_entry.hpp"
 #include "element/one_point.hpp"
@@ -16,7 +15,7 @@ namespace sandglass {
 namespace {
 
 /// Smaller changes of displacement gradients do not impair the multigrid method.
-constexpr double hardly_changed = 0.1;
+constexpr float hardly_changed = 0.1f;
 
 /// The share of the smoother's diagonal that is added to the cycle, which pressures could make indefinite.
 constexpr float added_diagonal = 0.5f;
@@ -97,22 +96,7 @@ template <class Real>
 bool MixedBody<Real>::contact_changed() {
   if (!may_touch()) return false;
   contact_now_ = body_.springs_of_contact();
-  std::map<int, std::array<Tensor<float>, 2>> by_row;  // stiffness now and then
-  const auto add = [&](const std::vector<Spring>& springs, std::size_t when) {
-    for (const Spring& spring : springs) {
-      for (std::size_t n = 0; n < spring.size; ++n)
-        add_square(std::abs(spring.weights[n]), spring.root,
-                   by_row.try_emplace(spring.nodes[n]).first->second[when]);
-    }
-  };
-  add(contact_now_, 0);
-  add(contact_, 1);
-  return std::ranges::any_of(by_row, [](const auto& of_row) {
-    const auto& [now, then] = of_row.second;
-    const Tensor<float> change = now - then;
-    return double_dot(change, change) >
-           2.0 * hardly_changed * hardly_changed * std::max(double_dot(now, now), double_dot(then, then));
-  });
+  return differ(contact_now_, contact_, hardly_changed);
 }
 
 template <class Real>
@@ -129,7 +113,7 @@ void MixedBody<Real>::linearize(double penalty) {
     for (std::size_t row = 0; row < change.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) change[row][i] -= linearized_at_[row][i];
     }
-    if (multigrid_.elements().largest_gradient(change) < hardly_changed && !touches_elsewhere) return;
+    if (multigrid_.elements().largest_gradient(change) < double{hardly_changed} && !touches_elsewhere) return;
   }
   linearized_at_ = std::move(u);
   linearized_penalty_ = penalty;

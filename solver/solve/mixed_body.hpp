@@ -206,12 +206,12 @@ class MixedBody {
   bool pressure_varies_;
   Rows<Real> free_;
   SaddleMultigrid multigrid_;
-  Rows<float> linearized_at_;          // m
-  double linearized_penalty_ = 0.0;    // zero before the first time
-  Rows<Real> before_, slid_;  // displacements before and after nodes slide along obstacles
-  std::size_t most_springs_;  // of contact
+  Rows<float> linearized_at_;                  // m
+  double linearized_penalty_ = 0.0;            // zero before the first time
+  Rows<Real> before_, slid_;                   // displacements before and after nodes slide along obstacles
+  std::size_t most_springs_;                   // of contact
   std::vector<Spring> contact_, contact_now_;  // linearized and present
-  bool linearized_ = false;   // whether the multigrid method belongs to these two
+  bool linearized_ = false;                    // whether the multigrid method belongs to these two
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
   Rows<Real> pressure_force_;
