@@ -140,10 +140,11 @@ TEST(Contact, derives_from_its_potential) {
     for (int trial = 0; trial < 20; ++trial) {
       Rows<double> u = back_again(away, random);
       const Rows<double> forces = body.forces(u);
-      Rows<float> roots(8);
+      std::vector<Spring> springs;
       const Rows<double> memory(body.contact->memory());
-      body.contact->set_contact_stiffness(body.factors, body.at_nodes(u), memory.data(),
-                                          {roots.data(), body.places});
+      body.contact->add_springs(body.factors, body.at_nodes(u), memory.data(), springs);
+      Rows<float> roots(8);
+      for (const Spring& spring : springs) roots[at(body.places[at(spring.nodes[0])])] = spring.root;
       for (std::size_t n = 0; n < 8; ++n) {
         Vector from_potential{};
         const double h = 1e-6;

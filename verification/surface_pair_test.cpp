@@ -11,7 +11,6 @@
 #include "mesh/edges.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/leapfrog.hpp"
-#include "solve/relaxation.hpp"
 #include "support/allocations.hpp"
 #include "support/kept_run.hpp"
 #include "support/momentum.hpp"
@@ -386,18 +385,6 @@ TEST(SurfacePair, names_what_is_wrong) {
             std::string::npos);
   EXPECT_NE(message(0.0, pair_of("under", "nowhere", kinematic)).find("contact.other = 'nowhere'"),
             std::string::npos);
-  TwoBodies at_rest = collision(kinematic, 0.0);
-  at_rest.description.quasi_static = true;
-  at_rest.description.displacements = {{"foot", {}}, {"top", {}}};
-  const Scene scene = at_rest.scene();
-  Recorder silent;
-  try {
-    relax(Model(scene, {"tl-perturbation"}), silent);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("[[contact]] has no static equilibrium"), std::string::npos)
-        << error.what();
-  }
 }
 
 }  // namespace

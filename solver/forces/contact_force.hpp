@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "forces/body_force.hpp"
+#include "math/spring.hpp"
 #include "mesh/vectors.hpp"
 
 namespace sandglass {
@@ -156,10 +157,9 @@ class ContactForce : public BodyForce {
   virtual void slide(Factors /*factors*/, NodalRows /*before*/, const Row<double>* /*memory*/,
                      AtNodes<Row<double>> /*u*/) const {}
 
-  /// Its stiffness where the body touches it now: sets the rows of these nodes to a direction, of length one,
-  /// times the root of the stiffness along it (N/m), unless they have a larger one.
-  virtual void set_contact_stiffness(Factors factors, NodalRows u, const Row<double>* memory,
-                                     AtNodes<Row<float>> roots) const = 0;
+  /// Adds the springs that its stiffness consists of where the body touches it now, by numbers of nodes.
+  virtual void add_springs(Factors factors, NodalRows u, const Row<double>* memory,
+                           std::vector<Spring>& springs) const = 0;
 
   /// The force that takes its place in static equilibrium; none: it is the same.
   virtual std::shared_ptr<const BodyForce> at_rest() const { return nullptr; }

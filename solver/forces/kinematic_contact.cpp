@@ -71,8 +71,8 @@ class KinematicContact final : public ObstacleContact {
                              double& /*sum*/) const override {}
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
                  std::vector<LoadRates>& /*rates*/) const override {}
-  void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
-                             AtNodes<Row<float>> /*roots*/) const override {}
+  void add_springs(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
+                   std::vector<Spring>& /*springs*/) const override {}
   std::size_t memory() const override { return ContactMemory::own + own + 2 * nodes_.size(); }
 
   std::shared_ptr<const BodyForce> at_rest() const override {

@@ -191,6 +191,15 @@ Row<double> MovingSurface::weights_at(const SurfaceFoot& foot, const Vector& x,
   return of_corners(plane_weights(triangle, x), foot.triangle);
 }
 
+MovingSurface::Plane MovingSurface::plane_at(int face, std::size_t triangle, const Vector& x,
+                                             const Row<double>* rows) const {
+  const auto X = triangle_of(corners_now(face, rows), triangle);
+  const Vector up = cross(difference(X[1], X[0]), difference(X[2], X[0])), weights = plane_weights(X, x),
+               normal = direction_of(up, length(up));
+  return {normal, dot(normal, difference(x, X[0])), of_corners(weights, triangle),
+          *std::ranges::min_element(weights)};
+}
+
 std::pair<Vector, Vector> MovingSurface::directions(const SurfaceFoot& foot, const Vector& x,
                                                     const std::array<Vector, 4>& now,
                                                     const std::array<Vector, 4>& then) {

@@ -91,6 +91,17 @@ class MovingSurface {
   SurfaceFoot closest(const Vector& x, const Vector& normal, double reach, const std::vector<int>& except,
                       const Row<double>* rows) const;
 
+  /// The plane of a triangle of a face.
+  struct Plane {
+    Vector normal;        ///< outwards, of length one
+    double gap;           ///< of a point outside, m; negative inside
+    Row<double> weights;  ///< of the corners of the face at the projection of the point
+    double least;         ///< weight of a corner of the triangle there: negative outside of it
+  };
+
+  /// At a point x (m).
+  Plane plane_at(int face, std::size_t triangle, const Vector& x, const Row<double>* rows) const;
+
   /// The weights of the corners of a face at the projection of x (m) onto the plane of one of its triangles,
   /// also beyond the triangle.
   Row<double> weights_at(const SurfaceFoot& foot, const Vector& x, const Row<double>* rows) const;

@@ -107,15 +107,11 @@ class PenaltyContact final : public ObstacleContact {
     });
   }
 
-  void set_contact_stiffness(Factors factors, NodalRows u, const Row<double>* memory,
-                             AtNodes<Row<float>> roots) const override {
+  void add_springs(Factors factors, NodalRows u, const Row<double>* memory,
+                   std::vector<Spring>& springs) const override {
     for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
-      const auto& [node, X, stiffness] = nodes_[k];
       if (!touches(k, gap, memory)) return;
-      Row<float>& row = roots[node];
-      const auto there = static_cast<double>(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-      if (there >= stiffness) return;
-      for (std::size_t i = 0; i < 3; ++i) row[i] = static_cast<float>(std::sqrt(stiffness) * gap.normal[i]);
+      springs.push_back({{nodes_[k].node}, {1.0f}, 1, root_of(nodes_[k].stiffness, gap.normal)});
     });
   }
 

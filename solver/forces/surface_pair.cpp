@@ -26,16 +26,32 @@ SurfacePair::SurfacePair(const Contact& contact, SurfacesOfPair given, const Nod
       contact_(contact),
       given_(std::move(given)),
       by_point_(by_point) {
-  for (const auto& faces : given_.faces) {
-    surfaces_.emplace_back(points, faces);
-    rows_of_.push_back(memory_ - ContactMemory::own);
-    memory_ += surfaces_.back().rows() + by_node * surfaces_.back().nodes().size();
-  }
+  for (const auto& faces : given_.faces) surfaces_.emplace_back(points, faces);
   for (std::size_t from = 0; from < surfaces_.size(); ++from) {
     const std::size_t onto = surfaces_.size() - 1 - from;
-    sides_.push_back(
-        {from, onto, faces_around(surfaces_[from], given_.faces[onto], cells), memory_ - ContactMemory::own});
-    memory_ += by_point * surfaces_[from].points().size();
+    sides_.push_back({from, onto, faces_around(surfaces_[from], given_.faces[onto], cells), 0});
+  }
+  lay_out(by_node);
+}
+
+SurfacePair::SurfacePair(const SurfacePair& other, std::size_t by_point, const ForceTraits& traits)
+    : ContactForce(other.nodes(), traits),
+      contact_(other.contact_),
+      given_(other.given_),
+      surfaces_(other.surfaces_),
+      sides_(other.sides_),
+      by_point_(by_point) {
+  lay_out(0);
+}
+
+void SurfacePair::lay_out(std::size_t by_node) {
+  for (const MovingSurface& surface : surfaces_) {
+    rows_of_.push_back(memory_ - ContactMemory::own);
+    memory_ += surface.rows() + by_node * surface.nodes().size();
+  }
+  for (Side& side : sides_) {
+    side.first_row = memory_ - ContactMemory::own;
+    memory_ += by_point_ * surfaces_[side.from].points().size();
   }
 }
 

@@ -18,6 +18,9 @@ struct SurfacesOfPair {
   std::size_t friction_curve;                     ///< number of the curve with the factor of the friction
 };
 
+class SurfacePair;
+std::shared_ptr<const BodyForce> make_resting_pair(const SurfacePair& pair);
+
 /// Points of a surface against faces of the other, and the other way round, or of a surface against its own
 /// faces: what all methods share. A point touches if it is behind a face that opposes it, not deeper than the
 /// reach. Points far from all faces are searched again only when nodes have moved far enough to touch.
@@ -32,17 +35,19 @@ class SurfacePair : public ContactForce {
   /// The deepest point of the undeformed body; none if there is no contact.
   std::optional<Deepest> deepest_at_start() const;
 
+  const Contact& contact() const { return contact_; }
   std::size_t memory() const final { return memory_; }
   Touch touch(const Row<double>* memory) const final { return touch_of(contact_.label, memory); }
   double half_thickness() const final { return given_.reach; }
   double travel() const final { return 0.0; }
-  std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final;
+  std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override;
+  std::shared_ptr<const BodyForce> at_rest() const override { return make_resting_pair(*this); }
 
-  // There is no static search.
+  // In motions there is no search for equilibrium.
   void add_contact_potential(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
-                             double& /*sum*/) const final {}
-  void set_contact_stiffness(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
-                             AtNodes<Row<float>> /*roots*/) const final {}
+                             double& /*sum*/) const override {}
+  void add_springs(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
+                   std::vector<Spring>& /*springs*/) const override {}
 
  protected:
   /// What a pair remembers in its first row: the sum of the largest relative motions of nodes, m; the last of
@@ -63,6 +68,13 @@ class SurfacePair : public ContactForce {
   /// `by_point` and `by_node` are the numbers of rows that points and nodes remember.
   SurfacePair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
               std::span<const Hexahedron> cells, std::size_t by_point, std::size_t by_node);
+
+  /// The same surfaces, with as many rows of points.
+  SurfacePair(const SurfacePair& other, std::size_t by_point, const ForceTraits& traits);
+
+  /// Moves the surfaces to displacements u (m), and returns the motions of nodes since the last evaluation.
+  template <class Displacements>
+  Motions move(const Displacements& u, ContactMemory& memory) const;
 
   Row<double>* of_point(ContactMemory& memory, const Side& side, std::size_t k) const {
     return memory.others + side.first_row + by_point_ * k;
@@ -94,14 +106,16 @@ class SurfacePair : public ContactForce {
   /// A node with the largest weight.
   static int node_of(const MovingSurface& surface, const SurfacePoint& point);
 
+  /// Places the rows in the memory.
+  void lay_out(std::size_t by_node);
+
   const std::size_t by_point_;
   std::vector<std::size_t> rows_of_;  // the first of each surface
   std::size_t memory_ = ContactMemory::own + 1;
 };
 
-template <class Displacements, class Use, class LetGo>
-void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, const Use& use,
-                                 const LetGo& let_go) const {
+template <class Displacements>
+Motions SurfacePair::move(const Displacements& u, ContactMemory& memory) const {
   Row<double>& of_pair = memory.others[0];
   double& way = of_pair[way_so_far];
   const bool is_first = way == 0.0;
@@ -110,6 +124,14 @@ void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, 
     surfaces_[s].move(u, is_first, of_surface(memory, s), motions);
   of_pair[last_way] = is_first ? INFINITY : motions.largest_relative();
   way += is_first ? given_.reach : of_pair[last_way];
+  return motions;
+}
+
+template <class Displacements, class Use, class LetGo>
+void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, const Use& use,
+                                 const LetGo& let_go) const {
+  const Motions motions = move(u, memory);
+  const double way = memory.others[0][way_so_far];
   // Within one step, points of fast bodies may pass deeper than the reach.
   const double range = std::max(given_.reach, motions.largest_relative());
   bool fits = false;
@@ -156,6 +178,10 @@ std::shared_ptr<SurfacePair> make_penalty_pair(const Contact& contact, SurfacesO
 /// takes from their relative motion along the face at most the coefficient of friction times the impulse.
 std::shared_ptr<SurfacePair> make_kinematic_pair(const Contact& contact, SurfacesOfPair given,
                                                  const NodalField& points, std::span<const Hexahedron> cells);
+
+/// At rest: without friction, between two surfaces. Points that touch are pushed along the normal of a
+/// triangle of the face.
+std::shared_ptr<const BodyForce> make_resting_pair(const SurfacePair& pair);
 
 /// By the method of the contact.
 std::shared_ptr<SurfacePair> make_surface_pair(const Contact& contact, SurfacesOfPair given,

@@ -80,10 +80,12 @@ class Elements final : public ElementLevel {
     for (std::size_t row = 0; row < springs_.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) y.u[row][i] += springs_[row][i] * x.u[row][i];
     }
-    for (const std::size_t row : touching_) {
-      const Row<float>& s = contact_[row];
-      const float along = s[0] * x.u[row][0] + s[1] * x.u[row][1] + s[2] * x.u[row][2];
-      for (std::size_t i = 0; i < 3; ++i) y.u[row][i] += s[i] * along;
+    for (const Spring& spring : contact_) {
+      const float along = spring.extension(x.u);
+      for (std::size_t n = 0; n < spring.size; ++n) {
+        Row<float>& force = y.u[at(spring.nodes[n])];
+        for (std::size_t i = 0; i < 3; ++i) force[i] += spring.weights[n] * along * spring.root[i];
+      }
     }
   }
 

@@ -55,15 +55,6 @@ class ElementLevel : public SaddleLevel {
   /// The stiffness of springs that hold the rows, N/m; empty without any.
   const Rows<float>& springs() const { return springs_; }
 
-  /// Sets springs of contact: the direction times the root of the stiffness, root of N/m. `update` or
-  /// `update_contact` must follow.
-  void set_contact(const Rows<float>& roots) {
-    contact_ = roots;
-    touching_.clear();
-    for (std::size_t row = 0; row < roots.size(); ++row)
-      if (roots[row].x != Row<float>{}.x) touching_.push_back(row);
-  }
-
   /// Takes the springs of contact in the configuration of the last `update`.
   void update_contact() { set_smoother(stiffness_, bound_); }
 

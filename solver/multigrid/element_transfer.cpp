@@ -131,7 +131,7 @@ void ElementTransfer::gather() {
     }
   });
   without_contact_.clear();
-  if (!elements_.contact().empty()) gather_contact();
+  if (!elements_.touching().empty()) gather_contact();
 }
 
 void ElementTransfer::gather_contact() {
@@ -189,14 +189,16 @@ BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
 }
 
 void ElementTransfer::add_contact(const Contents& contents, BoxProblem& problem) const {
+  const auto& touching = elements_.touching();
   for (const std::uint32_t row : contents.rows) {
-    const Row<float>& s = elements_.contact()[row];
-    if (s.x == Row<float>{}.x) continue;
+    const auto found = std::ranges::lower_bound(touching, row, {}, &SaddleLevel::Touching::row);
+    if (found == touching.end() || found->row != row) continue;
     const auto w = weights(places_[row].local);
-    std::array<float, 24> along;
-    for (std::size_t a = 0; a < 24; ++a) along[a] = w[a / 3] * s[a % 3];
     for (std::size_t a = 0; a < 24; ++a) {
-      for (std::size_t b = 0; b < 24; ++b) problem.A[24 * a + b] += along[a] * along[b];
+      for (std::size_t b = 0; b < 24; ++b) {
+        const int i = static_cast<int>(a % 3), j = static_cast<int>(b % 3);
+        problem.A[24 * a + b] += w[a / 3] * w[b / 3] * found->ground(i, j);
+      }
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "math/matrix.hpp"
 #include "math/row_loops.hpp"
@@ -22,6 +23,26 @@ void for_all(const Blocks& blocks, const Body& body) {
 /// The scale of D, see SaddleLevel::relaxation.
 constexpr float relaxation_step = 1.3f;
 
+/// u += factor E f.
+void add_product(float factor, const Tensor<float>& E, const Row<float>& f, Row<float>& u) {
+  for (int i = 0; i < 3; ++i)
+    u[static_cast<std::size_t>(i)] += factor * (E(i, 0) * f[0] + E(i, 1) * f[1] + E(i, 2) * f[2]);
+}
+
+/// What springs K (N/m) of a row add to the diagonal of D (m/N): by the formula of Sherman and Morrison for
+/// each column of the root of K, because D may be singular.
+Tensor<float> change_by(const Tensor<float>& K, const Row<float>& diagonal) {
+  const Tensor<float> root = cholesky(K);
+  Tensor<float> change{};
+  for (int column = 0; column < 3; ++column) {
+    Row<float> s{{root(0, column), root(1, column), root(2, column)}}, Ds{};
+    for (std::size_t i = 0; i < 3; ++i) Ds[i] = diagonal[i] * s[i];
+    add_product(1.0f, change, s, Ds);
+    add_square(-1.0f / (relaxation_step + Ds[0] * s[0] + Ds[1] * s[1] + Ds[2] * s[2]), Ds, change);
+  }
+  return change;
+}
+
 /// The largest eigenvalue of D M, M symmetric, within 3^(1/4): the trace of the fourth power bounds its
 /// fourth power.
 float eigenvalue_bound(const Tensor<float>& D, const Tensor<float>& M) {
@@ -32,6 +53,21 @@ float eigenvalue_bound(const Tensor<float>& D, const Tensor<float>& M) {
 }
 
 }  // namespace
+
+Tensor<float> cholesky(const Tensor<float>& K) {
+  constexpr float least_pivot = 1e-6f;
+  Tensor<float> L{};
+  for (int j = 0; j < 3; ++j) {
+    for (int i = j; i < 3; ++i) {
+      float left = K(i, j);
+      for (int k = 0; k < j; ++k) left -= L(i, k) * L(j, k);
+      L(i, j) = i == j           ? std::sqrt(std::max(left, least_pivot * K(i, i)))
+                : L(j, j) > 0.0f ? left / L(j, j)
+                                 : 0.0f;
+    }
+  }
+  return L;
+}
 
 void SaddleLevel::resize(std::size_t rows, std::size_t cells) {
   free_.assign(rows, {});
@@ -45,12 +81,34 @@ void SaddleLevel::resize(std::size_t rows, std::size_t cells) {
   sum_.resize(cells);
 }
 
+void SaddleLevel::set_contact(const std::vector<Spring>& springs) {
+  contact_ = springs;
+  std::map<std::size_t, Touching> by_row;
+  for (const Spring& spring : springs) {
+    float sum = 0.0f;
+    for (std::size_t n = 0; n < spring.size; ++n) sum += std::abs(spring.weights[n]);
+    for (std::size_t n = 0; n < spring.size; ++n) {
+      Touching& one = by_row.try_emplace(at(spring.nodes[n]), Touching{}).first->second;
+      // The square of a sum is at most the sum of squares with these factors.
+      add_square(sum * std::abs(spring.weights[n]), spring.root, one.stiffness);
+      if (spring.size == 1) add_square(1.0f, spring.root, one.ground);
+    }
+  }
+  touching_.clear();
+  for (auto& [row, one] : by_row) {
+    one.row = row;
+    touching_.push_back(one);
+  }
+  touching_forces_.resize(touching_.size());
+}
+
 void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   for (std::size_t r = 0; r < free_.size(); ++r) {
     for (std::size_t i = 0; i < 3; ++i) {
       diagonal_[r][i] = free_[r][i] > 0.0f ? relaxation_step / (bound * diagonal[r][i]) : 0.0f;
     }
   }
+  for (Touching& one : touching_) one.change = change_by(one.stiffness, diagonal_[one.row]);
   // At each node, S couples the cells around it through M = sum of b b^T / (b^T D b): the largest eigenvalue
   // of D M over all nodes bounds those of diag(S)^-1 S.
   schur_ = compliance_;
@@ -58,7 +116,9 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   for_each_corner([&](std::size_t cell, std::size_t row, const std::array<float, 3>& b) {
     const Row<float>& D = diagonal_[row];
     Row<float> Db{{D[0] * b[0], D[1] * b[1], D[2] * b[2]}};
-    if (!contact_.empty()) hold_back(row, Db, Db);
+    const auto found = std::ranges::lower_bound(touching_, row, {}, &Touching::row);
+    if (found != touching_.end() && found->row == row)
+      add_product(1.0f, found->change, {{b[0], b[1], b[2]}}, Db);
     const float own = Db[0] * b[0] + Db[1] * b[1] + Db[2] * b[2];
     schur_[cell] += own;
     if (!(own > 0.0f)) return;
@@ -75,37 +135,18 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   for (float& s : schur_) s = s > 0.0f ? 1.0f / (largest * s) : 0.0f;
 }
 
-/// By the formula of Sherman and Morrison.
-void SaddleLevel::hold_back(std::size_t row, Row<float> relaxed, Row<float>& u) const {
-  const Row<float>&s = contact_[row], &D = diagonal_[row];
-  float stiffness = relaxation_step, force = 0.0f;
-  for (std::size_t i = 0; i < 3; ++i) {
-    stiffness += D[i] * s[i] * s[i];
-    force += s[i] * relaxed[i];
-  }
-  for (std::size_t i = 0; i < 3; ++i) u[i] -= D[i] * s[i] * force / stiffness;
-}
-
 Tensor<float> SaddleLevel::relaxation(std::size_t row) const {
-  Tensor<float> full;
-  for (std::size_t j = 0; j < 3; ++j) {
-    Row<float> column;
-    column[j] = diagonal_[row][j];
-    if (!contact_.empty()) hold_back(row, column, column);
-    for (std::size_t i = 0; i < 3; ++i) full(static_cast<int>(i), static_cast<int>(j)) = column[i];
-  }
-  return full;
+  Tensor<float> full{};
+  for (int i = 0; i < 3; ++i) full(i, i) = diagonal_[row][static_cast<std::size_t>(i)];
+  const auto found = std::ranges::lower_bound(touching_, row, {}, &Touching::row);
+  return found != touching_.end() && found->row == row ? full + found->change : full;
 }
 
 void SaddleLevel::relax(float share, const Rows<float>& f, Rows<float>& u) const {
   const float *D = numbers_of(diagonal_), *force = numbers_of(f);
   float* moved = numbers_of(u);
   for_all(blocks_.u, [=](std::size_t k) { moved[k] += share * D[k] * force[k]; });
-  for (const std::size_t row : touching_) {
-    Row<float> relaxed;
-    for (std::size_t i = 0; i < 3; ++i) relaxed[i] = share * diagonal_[row][i] * f[row][i];
-    hold_back(row, relaxed, u[row]);
-  }
+  for (const Touching& one : touching_) add_product(share, one.change, f[one.row], u[one.row]);
 }
 
 void SaddleLevel::smooth_from_zero(const MixedVector& b, MixedVector& x) {
@@ -138,8 +179,10 @@ void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
   });
   for (int step = 1; step < pressure_steps_; ++step) {
     gradient(change_, t_);
+    for (std::size_t n = 0; n < touching_.size(); ++n) touching_forces_[n] = t_[touching_[n].row];
     for_all(blocks_.u, [=](std::size_t k) { t[k] *= D[k]; });
-    for (const std::size_t row : touching_) hold_back(row, t_[row], t_[row]);
+    for (std::size_t n = 0; n < touching_.size(); ++n)
+      add_product(1.0f, touching_[n].change, touching_forces_[n], t_[touching_[n].row]);
     follow(t_);
     divergence(t_, y_.p);
     const float next = 1.0f / (2.0f * sigma - rho), keep = next * rho, add = 2.0f * next / radius;

@@ -4,9 +4,14 @@
 #include <vector>
 
 #include "math/matrix.hpp"
+#include "math/spring.hpp"
 #include "multigrid/mixed_vector.hpp"
 
 namespace sandglass {
+
+/// L with L L^T = K, lower triangular, of a symmetric K without negative eigenvalues. Pivots are at least
+/// 1e-6 of the diagonal: less is rounding.
+Tensor<float> cholesky(const Tensor<float>& K);
 
 /// One level of a multigrid method for the saddle-point problem of a nearly incompressible body,
 ///   A u + B^T p = f,   B u - C p = g,
@@ -48,19 +53,26 @@ class SaddleLevel {
   void residual(const MixedVector& b, const MixedVector& x, MixedVector& r) const;
 
   /// A row's block of D (m/N): the diagonal of A, inverted and scaled such that D A has eigenvalues below 2;
-  /// zero on constrained components. A spring of contact is part of it: with the spring s, D becomes the
-  /// inverse of D^-1 + s s^T, scaled as D.
+  /// zero on constrained components. Springs of contact are part of it: with their stiffness K, D becomes the
+  /// inverse of D^-1 + K, scaled as D.
   Tensor<float> relaxation(std::size_t row) const;
+
+  /// Sets the springs of contact, by row; an update must follow.
+  void set_contact(const std::vector<Spring>& springs);
 
   /// Adds a share of D f (m), f in N, to displacements u (m).
   void relax(float share, const Rows<float>& f, Rows<float>& u) const;
 
-  /// Springs of contact along one direction for each row, which has the length of the root of the stiffness
-  /// (N/m); empty without any.
-  const Rows<float>& contact() const { return contact_; }
+  /// A row with springs of contact.
+  struct Touching {
+    std::size_t row;
+    Tensor<float> ground;     // stiffness of those to the ground, N/m
+    Tensor<float> stiffness;  // an upper bound of that of all, N/m
+    Tensor<float> change;     // what they add to D, m/N
+  };
 
-  /// The rows with springs of contact.
-  const std::vector<std::size_t>& touching() const { return touching_; }
+  /// These rows, in ascending order.
+  const std::vector<Touching>& touching() const { return touching_; }
 
   /// The diagonal of D (m/N) without springs of contact.
   const Rows<float>& diagonal() const { return diagonal_; }
@@ -84,15 +96,11 @@ class SaddleLevel {
 
   MixedBlocks blocks_;
   Rows<float> free_;
-  std::vector<float> compliance_;  // C
-  Rows<float> contact_;
-  std::vector<std::size_t> touching_;  // rows with springs of contact
+  std::vector<float> compliance_;   // C
+  std::vector<Spring> contact_;     // springs of contact
+  std::vector<Touching> touching_;  // in ascending order
 
  private:
-  /// Takes from u (m) of a row the share of a force, relaxed without the row's spring (m), that the spring
-  /// bears.
-  void hold_back(std::size_t row, Row<float> relaxed, Row<float>& u) const;
-
   void relax_pressures(const MixedVector& b, MixedVector& x);
 
   int pressure_steps_;
@@ -102,6 +110,7 @@ class SaddleLevel {
   MixedVector y_;             // scratch
   Rows<float> t_;
   std::vector<float> r_, change_, sum_;
+  Rows<float> touching_forces_;  // scratch
 };
 
 }  // namespace sandglass

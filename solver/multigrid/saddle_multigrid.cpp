@@ -111,12 +111,16 @@ void SaddleMultigrid::assemble_grids() {
   }
 }
 
-void SaddleMultigrid::set_contact(const Rows<float>& roots) {
-  elements_->set_contact(roots);
+void SaddleMultigrid::set_contact(const std::vector<Spring>& springs) {
+  elements_->set_contact(springs);
   for (const MeshStage& stage : meshes_) {
-    Rows<float> own(stage.layout->rows());
-    for (std::size_t row = 0; row < stage.layout->nodes; ++row)
-      own[row] = roots[at(elements_->layout().row_of_node[at(stage.layout->node_of_row[row])])];
+    std::vector<Spring> own;
+    for (Spring spring : springs) {
+      const int node = elements_->layout().node_of_row[at(spring.nodes[0])];
+      if (spring.size > 1 || at(node) >= stage.layout->row_of_node.size()) continue;
+      spring.nodes[0] = static_cast<int>(stage.layout->row_of_node[at(node)]);
+      own.push_back(spring);
+    }
     stage.level->set_contact(own);
   }
 }

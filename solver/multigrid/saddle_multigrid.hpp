@@ -23,9 +23,10 @@ class SaddleMultigrid {
   void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
               const std::vector<float>& stiffening);
 
-  /// See ElementLevel::set_contact; nodes of coarser meshes have the same springs. `update` or
+  /// See SaddleLevel::set_contact. Coarser meshes have the springs to the ground of their nodes, and no
+  /// others. On grids, nodes at one place move together, as those do that springs connect. `update` or
   /// `update_contact` must follow.
-  void set_contact(const Rows<float>& roots);
+  void set_contact(const std::vector<Spring>& springs);
 
   /// Takes these springs in the configuration of the last `update`.
   void update_contact();

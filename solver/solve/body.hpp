@@ -129,10 +129,11 @@ class Body {
   /// See Loads::correct_contact.
   void correct_contact() { loads_.correct_contact(); }
 
-  /// See Loads::set_contact_stiffness.
-  void set_contact_stiffness(Rows<float>& roots) const {
-    loads_.set_contact_stiffness(state_.u, roots);
-  }
+  /// See Loads::share_in_reach.
+  double share_in_reach(const Rows<float>& change) const { return loads_.share_in_reach(change); }
+
+  /// See Loads::springs_of_contact.
+  std::vector<Spring> springs_of_contact() const { return loads_.springs_of_contact(of_all(state_.u)); }
 
   /// See Loads::push_out.
   void push_out(const Rows<Real>& inverse_masses, double gain) {

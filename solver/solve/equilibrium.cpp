@@ -406,7 +406,8 @@ double Equilibrium<Real>::extend(double load, double most) {
   }
   if (!(norm < most_extended_growth * first)) x = best;  // the cycles diverged
   const double gradient = mixed_.multigrid().elements().largest_gradient(x.u);
-  const double share = mixed_.is_linear() ? 1.0 : std::min(1.0, most / gradient);
+  const double share =
+      std::min(mixed_.is_linear() ? 1.0 : std::min(1.0, most / gradient), body().share_in_reach(x.u));
   const double reached = share < 1.0 ? load_before + share * (load - load_before) : load;
   body().impose(reached);  // where obstacles are, along which it slides
   body().move_to(before);

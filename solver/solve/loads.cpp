@@ -69,7 +69,8 @@ void Loads<Real>::begin_again(const Reactions& forces, const Reactions& moments)
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Row<double>* memory = memory_.data() + memory_of_[c];
     const std::string name(contacts_[c]->touch(memory).name);
-    contacts_[c]->begin_again(forces.at(name), moments.at(name), memory);
+    const auto moment = moments.find(name);  // of obstacles only
+    contacts_[c]->begin_again(forces.at(name), moment == moments.end() ? Vector{} : moment->second, memory);
   }
 }
 
@@ -235,15 +236,34 @@ void Loads<Real>::correct_contact() {
 }
 
 template <class Real>
-void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const {
-  Rows<double> there(u_.size());
-  take(u, there);
-  Rows<float> own(u_.size());
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    contacts_[c]->set_contact_stiffness(factors_, by_node(std::as_const(there).data()),
-                                        memory_.data() + memory_of_[c], by_node(own.data()));
+double Loads<Real>::share_in_reach(const Rows<float>& change) const {
+  double share = INFINITY;
+  for (const ContactForce* contact : contacts_) {
+    if (contact->movable()) continue;  // obstacles limit the levels themselves
+    Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    for (const int node : contact->nodes()) {
+      const Row<float>& of_node = change[rows_[at(place_of_node_[at(node)])]];
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], static_cast<double>(of_node[i]));
+        high[i] = std::max(high[i], static_cast<double>(of_node[i]));
+      }
+    }
+    share = std::min(share, 0.5 * contact->half_thickness() / distance(high, low));
   }
-  for (std::size_t k = 0; k < own.size(); ++k) roots[rows_[k]] = own[k];
+  return share;
+}
+
+template <class Real>
+std::vector<Spring> Loads<Real>::springs_of_contact(const Rows<Real>& u) const {
+  const Rows<double> there = loaded(u);
+  std::vector<Spring> springs;
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->add_springs(factors_, by_node(there.data()), memory_.data() + memory_of_[c], springs);
+  for (Spring& spring : springs) {
+    for (std::size_t n = 0; n < spring.size; ++n)
+      spring.nodes[n] = static_cast<int>(rows_[at(place_of_node_[at(spring.nodes[n])])]);
+  }
+  return springs;
 }
 
 template <class Real>

@@ -62,8 +62,13 @@ class Loads {
   /// Changes one node of all obstacles; see ContactForce::correct_contact.
   void correct_contact();
 
-  /// Sets `roots` (by row) to the stiffness of obstacles; see ContactForce::set_contact_stiffness.
-  void set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const;
+  /// The factor by which a change of displacements (m, by row) may be scaled until the surfaces of a pair
+  /// move relative to each other by half of the depth up to which they find each other; infinite without
+  /// pairs.
+  double share_in_reach(const Rows<float>& change) const;
+
+  /// The springs of contact by row; see ContactForce::add_springs.
+  std::vector<Spring> springs_of_contact(const Rows<Real>& u) const;
 
   /// Calls use(touch) with how the body touched each obstacle at the last evaluation.
   template <class Use>

@@ -15,7 +15,7 @@ namespace sandglass {
 namespace {
 
 /// Smaller changes of displacement gradients do not impair the multigrid method.
-constexpr double hardly_changed = 0.1;
+constexpr float hardly_changed = 0.1f;
 
 /// The share of the smoother's diagonal that is added to the cycle, which pressures could make indefinite.
 constexpr float added_diagonal = 0.5f;
@@ -46,6 +46,13 @@ Rows<float> stiffness_of_forces(const Scene& scene, const Layout& layout) {
   return std::ranges::all_of(stiffness, is_zero) ? Rows<float>{} : stiffness;
 }
 
+/// As each spring remembers at least one row.
+std::size_t springs_at_most(const BodyForces& forces) {
+  std::size_t most = 0;
+  for (const ContactForce* contact : contacts_of(forces)) most += contact->memory();
+  return most;
+}
+
 }  // namespace
 
 template <class Real>
@@ -61,7 +68,7 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       multigrid_(model.scene().mesh, model.scene().ties, model.scene().coarser, elements.layout(),
                  rounded_rows<float>(free_), stiffness_of_forces(model.scene(), elements.layout())),
       linearized_at_(free_.size()),
-      contact_(contacts_of(model.scene().forces).empty() ? 0 : free_.size()),
+      most_springs_(springs_at_most(model.scene().forces)),
       p_(model.scene().mesh.cells.size()),
       defect_(p_.size()),
       pressure_force_(free_.size()),
@@ -87,19 +94,9 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
 
 template <class Real>
 bool MixedBody<Real>::contact_changed() {
-  if (contact_.empty()) return false;
-  contact_now_.assign(free_.size(), {});
-  body_.set_contact_stiffness(contact_now_);
-  for (std::size_t row = 0; row < contact_.size(); ++row) {
-    double change = 0.0, size = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const float now = contact_now_[row][i], then = contact_[row][i];
-      change += static_cast<double>((now - then) * (now - then));
-      size += static_cast<double>(std::max(now * now, then * then));
-    }
-    if (change > hardly_changed * hardly_changed * size) return true;
-  }
-  return false;
+  if (!may_touch()) return false;
+  contact_now_ = body_.springs_of_contact();
+  return differ(contact_now_, contact_, hardly_changed);
 }
 
 template <class Real>
@@ -119,7 +116,7 @@ void MixedBody<Real>::linearize(double penalty) {
     for (std::size_t row = 0; row < change.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) change[row][i] -= linearized_at_[row][i];
     }
-    if (multigrid_.elements().largest_gradient(change) < hardly_changed) return linearize_contact();
+    if (multigrid_.elements().largest_gradient(change) < double{hardly_changed}) return linearize_contact();
   }
   linearized_at_ = std::move(u);
   linearized_penalty_ = penalty;
@@ -132,7 +129,7 @@ template <class Real>
 void MixedBody<Real>::update_multigrid() {
   std::vector<ModelModuli> moduli = moduli_;
   const std::vector<double> lambdas = remaining(linearized_penalty_);
-  const double most = contact_.empty() ? most_lambda_over_mu : most_lambda_over_mu_in_contact;
+  const double most = may_touch() ? most_lambda_over_mu_in_contact : most_lambda_over_mu;
   for (std::size_t m = 0; m < moduli.size(); ++m)
     moduli[m].lambda = std::min(lambdas[m], most * moduli[m].mu);
   multigrid_.update(linearized_at_, moduli, stiffening_of_laws());
@@ -322,7 +319,7 @@ template <class Real>
 void MixedBody<Real>::move(const MixedVector& step, double share) {
   const auto factor = static_cast<Real>(share);
   const float* s = numbers_of(step.u);
-  if (!contact_.empty()) before_ = body_.state().u;
+  if (may_touch()) before_ = body_.state().u;
   Real *u = numbers_of(body_.state().u), *increment = numbers_of(body_.state().increment);
   multigrid_.elements().blocks().u.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
@@ -339,7 +336,7 @@ void MixedBody<Real>::move(const MixedVector& step, double share) {
 /// Moves touching nodes, where they are free, along obstacles.
 template <class Real>
 void MixedBody<Real>::slide() {
-  if (contact_.empty()) return;
+  if (!may_touch()) return;
   Rows<Real>&u = body_.state().u, &increment = body_.state().increment;
   slid_ = u;
   body_.slide(before_, slid_);

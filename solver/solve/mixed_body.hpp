@@ -142,8 +142,10 @@ class MixedBody {
     archive("evaluations", evaluations_);
     archive("linearized at", linearized_at_);
     archive("linearized with a penalty", linearized_penalty_);
-    if (!contact_.empty()) {
-      archive("linearized contact", contact_);
+    if (may_touch()) {
+      Rows<float> rows = rows_of(contact_, most_springs_);
+      archive("linearized contact", rows);
+      contact_ = springs_of(rows);
       multigrid_.set_contact(contact_);
     }
     linearized_ = false;
@@ -154,6 +156,7 @@ class MixedBody {
   double volume(std::size_t element) const {
     return static_cast<double>(multigrid_.elements().tangents()[cell(element)].volume);
   }
+  bool may_touch() const { return most_springs_ > 0; }
   void evaluate_forces();
   void update_multigrid();
 
@@ -206,11 +209,12 @@ class MixedBody {
   bool pressure_varies_;
   Rows<Real> free_;
   SaddleMultigrid multigrid_;
-  Rows<float> linearized_at_;          // m
-  double linearized_penalty_ = 0.0;    // zero before the first time
-  Rows<Real> before_, slid_;           // displacements before and after nodes slide along obstacles
-  Rows<float> contact_, contact_now_;  // stiffness of obstacles, linearized and present
-  bool linearized_ = false;            // whether the multigrid method belongs to these two
+  Rows<float> linearized_at_;                  // m
+  double linearized_penalty_ = 0.0;            // zero before the first time
+  Rows<Real> before_, slid_;                   // displacements before and after nodes slide along obstacles
+  std::size_t most_springs_;                   // of contact
+  std::vector<Spring> contact_, contact_now_;  // linearized and present
+  bool linearized_ = false;                    // whether the multigrid method belongs to these two
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
   Rows<Real> pressure_force_;

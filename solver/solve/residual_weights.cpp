@@ -7,27 +7,6 @@
 
 namespace sandglass {
 
-namespace {
-
-/// The smallest share of a block of D that elimination leaves: less is rounding.
-constexpr float least_pivot = 1e-6f;
-
-}  // namespace
-
-Tensor<float> ResidualWeights::root(const Tensor<float>& D) {
-  Tensor<float> L{};
-  for (int j = 0; j < 3; ++j) {
-    for (int i = j; i < 3; ++i) {
-      float left = D(i, j);
-      for (int k = 0; k < j; ++k) left -= L(i, k) * L(j, k);
-      L(i, j) = i == j           ? std::sqrt(std::max(left, least_pivot * D(i, i)))
-                : L(j, j) > 0.0f ? left / L(j, j)
-                                 : 0.0f;
-    }
-  }
-  return L;
-}
-
 void ResidualWeights::set_forces(const ElementLevel& level) {
   const float* D = numbers_of(level.diagonal());
   float* weights = numbers_of(diagonal_.u);
@@ -35,8 +14,8 @@ void ResidualWeights::set_forces(const ElementLevel& level) {
     for (std::size_t k = first; k < last; ++k) weights[k] = std::sqrt(D[k]);
   });
   couplings_.clear();
-  for (const std::size_t row : level.touching()) {
-    const Tensor<float> L = root(level.relaxation(row));
+  for (const auto& [row, ground, stiffness, change] : level.touching()) {
+    const Tensor<float> L = cholesky(level.relaxation(row));
     for (int i = 0; i < 3; ++i) diagonal_.u[row][static_cast<std::size_t>(i)] = L(i, i);
     couplings_.push_back({row, L(1, 0), L(2, 0), L(2, 1)});
   }

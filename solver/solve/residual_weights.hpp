@@ -32,9 +32,6 @@ class ResidualWeights {
     float yx, zx, zy;
   };
 
-  /// L of a row's block of D.
-  static Tensor<float> root(const Tensor<float>& D);
-
   MixedVector diagonal_;  // of L, roots of m/N; roots of Pa/m^3
   std::vector<Coupling> couplings_;
 };
