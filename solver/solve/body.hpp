@@ -119,9 +119,7 @@ class Body {
   void correct_contact() { loads_.correct_contact(); }
 
   /// See Loads::set_contact_stiffness.
-  void set_contact_stiffness(Rows<float>& roots) const {
-    loads_.set_contact_stiffness(state_.u, roots);
-  }
+  void set_contact_stiffness(Rows<float>& roots) const { loads_.set_contact_stiffness(state_.u, roots); }
 
   /// See Loads::push_out.
   void push_out(const Rows<Real>& inverse_masses, double gain) {
