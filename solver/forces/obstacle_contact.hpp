@@ -95,9 +95,8 @@ class ObstacleContact : public ContactForce {
   /// Calls use(k, x, gap) for all nodes.
   template <class Rows, class Use>
   void for_each_gap(const Vector& moved, const Rows& u, const Use& use) const {
-    for_each_node(moved, u, [&](std::size_t k, const Vector& x, const auto& compute_gap) {
-      use(k, x, compute_gap());
-    });
+    for_each_node(moved, u,
+                  [&](std::size_t k, const Vector& x, const auto& compute_gap) { use(k, x, compute_gap()); });
   }
 
   /// At a position (m) in its frame.
