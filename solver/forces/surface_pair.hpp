@@ -19,6 +19,9 @@ struct SurfacesOfPair {
 };
 
 class SurfacePair;
+
+/// At rest: without friction, between two surfaces. Points that touch are pushed along the normal of a
+/// triangle of the face.
 std::shared_ptr<const BodyForce> make_resting_pair(const SurfacePair& pair);
 
 /// Points of a surface against faces of the other, and the other way round, or of a surface against its own
@@ -178,10 +181,6 @@ std::shared_ptr<SurfacePair> make_penalty_pair(const Contact& contact, SurfacesO
 /// takes from their relative motion along the face at most the coefficient of friction times the impulse.
 std::shared_ptr<SurfacePair> make_kinematic_pair(const Contact& contact, SurfacesOfPair given,
                                                  const NodalField& points, std::span<const Hexahedron> cells);
-
-/// At rest: without friction, between two surfaces. Points that touch are pushed along the normal of a
-/// triangle of the face.
-std::shared_ptr<const BodyForce> make_resting_pair(const SurfacePair& pair);
 
 /// By the method of the contact.
 std::shared_ptr<SurfacePair> make_surface_pair(const Contact& contact, SurfacesOfPair given,

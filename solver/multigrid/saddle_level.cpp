@@ -88,7 +88,7 @@ void SaddleLevel::set_contact(const std::vector<Spring>& springs) {
     float sum = 0.0f;
     for (std::size_t n = 0; n < spring.size; ++n) sum += std::abs(spring.weights[n]);
     for (std::size_t n = 0; n < spring.size; ++n) {
-      Touching& one = by_row.try_emplace(at(spring.nodes[n]), Touching{}).first->second;
+      Touching& one = by_row.try_emplace(static_cast<std::size_t>(spring.nodes[n]), Touching{}).first->second;
       // The square of a sum is at most the sum of squares with these factors.
       add_square(sum * std::abs(spring.weights[n]), spring.root, one.stiffness);
       if (spring.size == 1) add_square(1.0f, spring.root, one.ground);
