@@ -117,7 +117,7 @@ def test_every_method_is_written_or_refused_with_a_reason():
     [
         ("tl-perturbation column --dialect hlsl", "--dialect: hlsl not in {c,opencl,cuda,wgsl}"),
         ("tl-perturbation column --dialect wgsl -p double", "WGSL has no double precision"),
-        ("tl-perturbation column --dialect wgsl --step", "no kernels of nodes; allowed: c, opencl, cuda"),
+        ("tl-perturbation column --dialect wgsl --step", "no kernels of nodes; allowed: c, opencl"),
         ("tl-perturbation column --material 2", "--material = 2 must be in [1, 1]"),
         ("tl-perturbation cardiac-beam-1 --dialect wgsl", "lose digits in WGSL"),
         ("tl-perturbation stiff-core", "materials; choose one with --material, from 1 to 2"),
