@@ -231,6 +231,24 @@ TEST_F(Device, a_state_returns_to_the_last_check) {
   }
 }
 
+/// A body without constraints and loads flies on: u = v t, up to the rounding of a sum of some hundred steps.
+TEST_F(Device, a_free_body_flies_on) {
+  CaseOnMesh block = loaded_block();
+  Case& description = block.description;
+  description.rotations.clear();
+  description.forces = {};
+  description.dynamics.damping = 0.0;
+  description.dynamics.frames = 1;
+  const Scene scene = make_scene(block);
+  MethodChoice choice{.method = "tl-enhanced"};
+  choice.processor = processor_;
+  Observer silent;
+  const Motion motion = integrate(Model(scene, choice), silent);
+  EXPECT_GT(motion.traffic.launches, 0);
+  EXPECT_LE(largest_distance(motion.u, NodalField(motion.u.size(), {0.02 * motion.time, 0.0, 0.0})),
+            1e-12 * 0.02 * motion.time);
+}
+
 /// The head passes through the element below it in one step: found on the device, and said as it is here.
 TEST_F(Device, inverted_elements_are_found_there) {
   CaseOnMesh block = loaded_block();

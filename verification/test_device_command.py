@@ -18,6 +18,13 @@ def test_limits_of_dynamic_cases_hold_on_a_device():
     assert "tl-adaptive" not in printed  # a device cannot compute it, which breaks no limit
 
 
+def test_a_run_says_where_its_state_is():
+    printed = sandglass("run", "pushed-ellipsoid", "--device", "opencl", code=0).stdout
+    assert "state on the device: 2 kernels and " in printed
+    printed = sandglass("run", "tool-press", "--device", "opencl", code=0).stdout
+    assert "state copied to the device in every step: [[obstacle]] acts on it" in printed
+
+
 def test_a_static_answer_is_found_with_the_forces_of_a_device():
     printed = sandglass("run", "column", "-m", "tl-mean-dilatation", "--device", "opencl", code=0)
     assert "against the golden: max" in printed.stdout
@@ -42,6 +49,7 @@ def test_bench_times_the_device_beside_this_processor(tmp_path):
         (("run", "column", "--device", "opencl:99"), "is no processor of this machine"),
         (("run", "brain-hold", "-m", "tl-perturbation", "--device", "opencl"), "viscoelastic"),
         (("run", "pushed-ellipsoid", "-m", "t4-anp", "--device", "opencl"), "averages over nodes"),
+        (("run", "pushed-ellipsoid", "-m", "ul-viscous", "--device", "opencl"), "on velocities"),
         (("bench", "column", "--rest", "--device", "opencl"), "--device"),
     ],
 )

@@ -162,6 +162,7 @@ void OpenClBuffer::write(const void* from, std::size_t bytes) {
 }
 
 void OpenClBuffer::read(void* to, std::size_t bytes) const {
+  if (bytes == 0) return;
   require_success(
       opencl().read(device_.queue_.get(), memory_.get(), CL_TRUE, 0, bytes, to, 0, nullptr, nullptr),
       device_.name(), "copying from it");

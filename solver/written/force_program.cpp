@@ -21,6 +21,7 @@ constexpr std::string_view obstacle() {
   if (is_adaptive<Method>) return "it chooses a level for each element; write its levels";
   if (Kernel<Method>::averages_over_nodes) return "it averages over nodes, in two passes over the elements";
   if (Kernel<Method>::remembers) return "its elements remember earlier steps";
+  if (Kernel<Method>::needs_increment) return "its force depends on velocities";
   return {};
 }
 

@@ -164,7 +164,7 @@ def kernels(method, case, *, dialect="c", precision=None, material=None, step=Fa
 
     `dialect`: the language; a wrong one is answered with those known. `precision`: "double" or
     "float"; None: double where the dialect has it. `material`: its number in the case, from 1.
-    `step`: add the kernels that take steps where the state is; the force then reads nodes by places.
+    `step`: add the kernels that take steps where the state is; the force then reads nodes by place.
     Returns the text.
     """
     with _files(case) as (file,):
