@@ -133,9 +133,8 @@ struct LawName {
   }
 };
 
-using LawsWithTextbooks =
-    ::testing::Types<StVenantKirchhoff, CompressibleNeoHookean, MooneyRivlin, Yeoh, FibreNeoHookean, Guccione,
-                     HolzapfelOgden>;
+using LawsWithTextbooks = ::testing::Types<StVenantKirchhoff, CompressibleNeoHookean, MooneyRivlin, Yeoh,
+                                           FibreNeoHookean, Guccione, HolzapfelOgden>;
 TYPED_TEST_SUITE(LawOracleTest, LawsWithTextbooks, LawName);
 
 /// In long double the textbook's cancellation costs 1e-19/|H|. Also without the volumetric part, which

@@ -23,10 +23,9 @@ namespace sandglass {
 /// weighted_kirchhoff. QuadraticVolume provides the common parts. A law that is not isotropic also has
 /// small_strain_stress; a law with rules between its parameters has broken_rule.
 template <class Value>
-using ElasticLawsOf =
-    TypeList<NeoHookeanOf<Value>, StVenantKirchhoffOf<Value>, MooneyRivlinOf<Value>, YeohOf<Value>,
-             OgdenOf<Value>, FibreNeoHookeanOf<Value>, GuccioneOf<Value>, HolzapfelOgdenOf<Value>,
-             CompressibleNeoHookeanOf<Value>>;
+using ElasticLawsOf = TypeList<NeoHookeanOf<Value>, StVenantKirchhoffOf<Value>, MooneyRivlinOf<Value>,
+                               YeohOf<Value>, OgdenOf<Value>, FibreNeoHookeanOf<Value>, GuccioneOf<Value>,
+                               HolzapfelOgdenOf<Value>, CompressibleNeoHookeanOf<Value>>;
 using ElasticLaws = ElasticLawsOf<double>;
 
 }  // namespace sandglass
