@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "sandglass/simulation.hpp"
+#include "solve/health.hpp"
 #include "support/pressed.hpp"
 #include "support/static_answer.hpp"
 #include "support/two_bodies.hpp"
@@ -218,6 +219,19 @@ TEST(RestingPair, does_not_depend_on_threads) {
     return rest_of(Model(scene, {"tl-perturbation", {}, Precision::double_precision, threads})).found.u;
   };
   EXPECT_EQ(u(1), u(2));
+}
+
+/// An answer with one body in the other is refused; pressed surfaces are in each other by their depth.
+TEST(RestingPair, does_not_answer_with_a_body_in_the_other) {
+  const TwoBodies bodies = blocks(4, 0.1, 0.1);
+  const Scene scene = bodies.scene();
+  const auto fallen_by = [&](double way) {
+    NodalField u(scene.mesh.points.size());
+    for (const int node : scene.sets.at("upper")) u[at(node)][2] = -way;
+    return u;
+  };
+  for (const double way : {0.0, 0.1, 0.11}) EXPECT_NO_THROW(require_apart(scene, fallen_by(way)));
+  for (const double way : {0.2, 0.45}) EXPECT_THROW(require_apart(scene, fallen_by(way)), ComputationError);
 }
 
 /// What has no static equilibrium is refused by name.

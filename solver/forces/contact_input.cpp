@@ -44,25 +44,12 @@ int node_within_body(const ForceResolver& resolver, const std::vector<Quadrilate
   for (const Hexahedron& cell : resolver.cells) {
     for (const int node : cell) bodies.join(cell[0], node);
   }
-  std::vector<bool> has_other(resolver.points.size(), false), remains(resolver.points.size(), false);
+  std::vector<bool> has_other(resolver.points.size(), false);
   for (const int node : nodes_of(other)) has_other[at(bodies.least(node))] = true;
-  for (const int node : nodes_of(surface)) remains[at(node)] = true;
-  std::vector<PointWithin> within;
-  for (std::size_t e = 0; e < resolver.cells.size(); ++e) {
-    const Vector middle = mean_at(resolver.cells[e], resolver.points);
-    for (const int node : resolver.cells[e]) {
-      if (!remains[at(node)]) continue;
-      remains[at(node)] = false;
-      constexpr double inwards = 1e-3;
-      const Vector& X = resolver.points[at(node)];
-      within.push_back({e, sum(X, inwards, difference(middle, X))});
-    }
-  }
-  for (const auto& [point, element] : overlaps(resolver.points, resolver.cells, within)) {
-    if (!has_other[at(bodies.least(resolver.cells[element][0]))]) continue;
-    return *std::ranges::min_element(resolver.cells[point.element], {}, [&, at_point = point.X](int node) {
-      return distance(resolver.points[at(node)], at_point);
-    });
+  constexpr double just_within = 1e-3;
+  const auto points = points_within(resolver.points, resolver.cells, nodes_of(surface), just_within);
+  for (const auto& [point, element] : overlaps(resolver.points, resolver.cells, points)) {
+    if (has_other[at(bodies.least(resolver.cells[element][0]))]) return point.node;
   }
   return -1;
 }

@@ -150,6 +150,24 @@ NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalFie
   return values;
 }
 
+std::vector<PointWithin> points_within(const NodalField& points, std::span<const Hexahedron> cells,
+                                       std::span<const int> nodes, double share) {
+  std::vector<bool> remains(points.size(), false);
+  for (const int node : nodes) remains[at(node)] = true;
+  std::vector<PointWithin> within;
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    for (const int node : cells[e]) {
+      if (!remains[at(node)]) continue;
+      remains[at(node)] = false;
+      const Vector& X = points[at(node)];
+      Vector inside = mean_at(cells[e], points);
+      for (std::size_t i = 0; i < 3; ++i) inside[i] = X[i] + share * (inside[i] - X[i]);
+      within.push_back({node, e, inside});
+    }
+  }
+  return within;
+}
+
 std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& points,
                                                           std::span<const Hexahedron> cells,
                                                           const std::vector<PointWithin>& some) {

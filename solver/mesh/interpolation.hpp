@@ -25,11 +25,16 @@ std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& poi
 /// from the closest element in parent coordinates. Throws InputError for a point that is far from the mesh.
 NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalField& points);
 
-/// A point (m) just within an element.
+/// A point (m) within an element of a node.
 struct PointWithin {
+  int node;
   std::size_t element;
   Vector X;
 };
+
+/// Points for some nodes, the given share of the way from each to the middle of one of its elements.
+std::vector<PointWithin> points_within(const NodalField& points, std::span<const Hexahedron> cells,
+                                       std::span<const int> nodes, double share);
 
 /// The points that are also within other elements, with each of these: there the mesh overlaps itself.
 std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& points,

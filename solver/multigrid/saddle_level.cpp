@@ -35,6 +35,8 @@ Tensor<float> change_by(const Tensor<float>& K, const Row<float>& diagonal) {
   const Tensor<float> root = cholesky(K);
   Tensor<float> change{};
   for (int column = 0; column < 3; ++column) {
+    const float pivot = root(column, column);
+    if (!(pivot * pivot > 2e-6f * K(column, column))) continue;  // rounding, see cholesky
     Row<float> s{{root(0, column), root(1, column), root(2, column)}}, Ds{};
     for (std::size_t i = 0; i < 3; ++i) Ds[i] = diagonal[i] * s[i];
     add_product(1.0f, change, s, Ds);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/error.hpp"
+#include "mesh/interpolation.hpp"
 
 namespace sandglass {
 
@@ -81,6 +83,36 @@ void require_not_passed(const Touch& touch, const NodalField& points, long step)
       "remedy: press less or more slowly, take smaller steps (step_fraction), and by method = 'penalty' a "
       "larger penalty",
       step, touch.name, touch.passed, X[0], X[1], X[2]));
+}
+
+void require_apart(const Scene& scene, const NodalField& u) {
+  const Mesh& mesh = scene.mesh;
+  for (const ContactForce* contact : contacts_of(scene.forces)) {
+    if (contact->movable()) continue;  // obstacles push nodes at any depth
+    // A pressed surface is a little within the other.
+    constexpr double deep_within = 0.3;
+    const auto overlaps_of = [&](const NodalField& points) {
+      std::set<std::pair<int, std::size_t>> found;
+      const auto within = points_within(points, mesh.cells, contact->nodes(), deep_within);
+      for (const auto& [point, element] : overlaps(points, mesh.cells, within))
+        found.emplace(point.node, element);
+      return found;
+    };
+    NodalField now = mesh.points;
+    for (std::size_t n = 0; n < now.size(); ++n) now[n] = sum(now[n], 1.0, u[n]);
+    const auto overlapping = overlaps_of(now);
+    if (overlapping.empty()) continue;
+    const auto before = overlaps_of(mesh.points);
+    for (const auto& [node, element] : overlapping) {
+      if (before.contains({node, element})) continue;
+      const Vector& X = mesh.points[at(node)];
+      throw ComputationError(fmt::format(
+          "contact '{}': in the equilibrium found, node {}, undeformed at ({:.6g}, {:.6g}, {:.6g}) m, is "
+          "within element {}: bodies passed through each other\n"
+          "remedy: impose less displacement, or more levels",
+          contact->touch(Rows<double>(contact->memory()).data()).name, node, X[0], X[1], X[2], element));
+    }
+  }
 }
 
 template bool is_healthy(const Body<double>&);

@@ -113,6 +113,7 @@ class Search {
 
   Relaxation finish() {
     result_.u = body().field(body().state().u);
+    require_apart(model_.scene(), result_.u);
     result_.energies = body().energies();
     result_.steps = equilibrium_.evaluations() + evaluations_of_estimates_;
     result_.residual = equilibrium_.residual();
