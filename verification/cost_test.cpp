@@ -12,6 +12,7 @@
 #include "benchmark/own_motion.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "comparison/answer.hpp"
+#include "counting/program_shape.hpp"
 #include "io/case_file.hpp"
 #include "mesh/box.hpp"
 #include "sandglass/driven_problem.hpp"
@@ -205,6 +206,22 @@ TEST(StepCost, follows_from_step_and_mean_step) {
   EXPECT_EQ(costings[1].cost->seconds, step.seconds);
   EXPECT_FALSE(costings[2].cost->mean_step);
   EXPECT_DOUBLE_EQ(*costings[2].cost->per_simulated_second(), 1000.0 * costings[2].cost->seconds);
+}
+
+/// p = a b is needed twice, so only the product q d goes into a difference; each operation needs the one
+/// before; p waits beside q, then beside q d. Shared operations and what no result needs do not count.
+TEST(ProgramShape, of_four_operations) {
+  Tape tape;
+  const Recorded a = tape.input(), b = tape.input(), c = tape.input(), d = tape.input();
+  const Recorded p = a * b, q = b * a + c;
+  static_cast<void>(a / d);  // no result needs it
+  const ProgramShape shape = shape_of(tape.program({p - q * d}));
+  EXPECT_EQ(shape.operations, 4);
+  EXPECT_EQ(shape.fused, 1);
+  EXPECT_EQ(shape.instructions(), 3);
+  EXPECT_EQ(shape.chain, 4);
+  EXPECT_EQ(shape.alive, 2);
+  EXPECT_DOUBLE_EQ(shape.peak_share(), 2.0 / 3.0);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "counting/counted.hpp"
 #include "counting/operation_count.hpp"
 #include "counting/paper_hourglass_force.hpp"
-#include "counting/program_shape.hpp"
 #include "element/methods.hpp"
 #include "math/pack.hpp"
 #include "support/fitting_elements.hpp"
@@ -183,22 +182,6 @@ TEST(Counted, distinguishes_the_kinds_and_skips_constants) {
   EXPECT_EQ(tally.div, 1);
   EXPECT_EQ(tally.special, 1);
   EXPECT_EQ(tally.total(), 4) << "every kind counts";
-}
-
-/// p = a b is needed twice, so only the product q d goes into a difference; each operation needs the one
-/// before; p waits beside q, then beside q d. Shared operations and what no result needs do not count.
-TEST(ProgramShape, of_four_operations) {
-  Tape tape;
-  const Recorded a = tape.input(), b = tape.input(), c = tape.input(), d = tape.input();
-  const Recorded p = a * b, q = b * a + c;
-  static_cast<void>(a / d);  // no result needs it
-  const ProgramShape shape = shape_of(tape.program({p - q * d}));
-  EXPECT_EQ(shape.operations, 4);
-  EXPECT_EQ(shape.fused, 1);
-  EXPECT_EQ(shape.instructions(), 3);
-  EXPECT_EQ(shape.chain, 4);
-  EXPECT_EQ(shape.alive, 2);
-  EXPECT_DOUBLE_EQ(shape.peak_share(), 2.0 / 3.0);
 }
 
 }  // namespace
