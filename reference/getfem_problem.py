@@ -81,9 +81,7 @@ class GetfemProblem(Problem):
         )
         cells = _field(body, 1, "FEM_QK(3,0)")
         self._volumes, of_centres = (
-            getfem.asm_generic(
-                points, 1, "Test_q", -1, "q", True, cells, np.zeros(cells.nbdof())
-            )
+            getfem.asm_generic(points, 1, "Test_q", -1, "q", True, cells, np.zeros(cells.nbdof()))
             for points in (self._points, self._centres)
         )
         model.add_initialized_fem_data("share", cells, self._volumes / of_centres)

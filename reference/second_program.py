@@ -11,8 +11,6 @@ import dataclasses
 import sys
 from pathlib import Path
 
-import numpy as np
-
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
@@ -102,8 +100,7 @@ def run(options):
     for name in options.cases:
         if name not in known:
             raise InputError(
-                f"CASE: {name!r} has no stored golden without masses; "
-                f"{suggestion(name, known)}"
+                f"CASE: {name!r} has no stored golden without masses; " f"{suggestion(name, known)}"
             )
     records = {}
     if STORE.exists():

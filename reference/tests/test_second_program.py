@@ -10,8 +10,9 @@ import second_program
 from blocks import MATERIALS, distorted_block
 from case_file import Gravity, Material
 from common.errors import InputError
-from hexahedra import Condition, HexMesh, Surface, traction
+from hexahedra import Condition, HexMesh, Surface, Touching, traction
 from newton import solve
+from obstacles import Obstacle
 from problem import MixedProblem
 
 SfepyProblem = pytest.importorskip("sfepy_problem").SfepyProblem
@@ -87,6 +88,41 @@ def test_materials_and_loads(program, stiff, only_normal, weight):
     assert np.abs(answers[0] - answers[1]).max() < SAME * np.abs(answers[1]).max()
 
 
+# The floor and the balls rise by a fifth of the block; the cavity is the block's own height.
+OBSTACLES = {
+    "plane": ({"point": [0.0, 0.0, 0.0], "normal": [0.2, 0.0, 2.0]}, False, 0.1),
+    "sphere": ({"point": [0.6, 0.4, -0.7], "radius": 0.7}, False, 0.2),
+    "ellipsoid": ({"point": [0.6, 0.4, -0.5], "half_sizes": [0.9, 0.7, 0.5]}, False, 0.2),
+    "cavity": ({"point": [0.5, 0.5, 0.5], "half_sizes": [0.9, 1.0, 0.8]}, True, 0.5),
+}
+
+
+@pytest.mark.parametrize("name", OBSTACLES)
+def test_obstacles(name):
+    """Distorted elements whose weight and contact are the nodes', as in the golden."""
+    parameters, inside, rise = OBSTACLES[name]
+    points, cells, _ = distorted_block(n=2)
+    foot, top = points[:, 2] < 1e-9, points[:, 2] > 1 - 1e-9
+    shape = "ellipsoid" if inside else name
+    obstacle = Obstacle("foot", shape, parameters, (0.0, 0.0, rise), inside)
+    mesh = HexMesh(
+        points,
+        cells,
+        (Condition(top, (0, 1, 2), np.zeros_like(points)),),
+        gravity=(Gravity((0.1, 0.0, -0.3)),),
+        touching=(Touching(foot, obstacle),),
+    )
+    materials = [dataclasses.replace(MATERIALS[0], density=1000.0)]
+    problems = GetfemProblem(mesh, materials), MixedProblem(mesh, materials)
+    answers = []
+    for problem in problems:
+        solve(problem, 4, 1e-12)
+        answers.append(problem.nodal_displacement())
+    (pressures,) = problems[1].multipliers()
+    assert 0 < (pressures > 0).sum()
+    assert np.abs(answers[0] - answers[1]).max() < SAME * np.abs(answers[1]).max()
+
+
 def test_unsupported_problems_are_refused(capsys):
     points, cells, boundary = distorted_block(n=2)
     held = (Condition(boundary, (0, 1, 2), np.zeros_like(points)),)
@@ -97,5 +133,9 @@ def test_unsupported_problems_are_refused(capsys):
         SfepyProblem(HexMesh(points, cells, held, surfaces=springs), MATERIALS)
     with pytest.raises(InputError, match="there is no weak form of 'ogden' for GetFEM"):
         second_program.second_problem(HexMesh(points, cells, held), [Material("ogden", {})])
+    box = Obstacle("foot", "box", {"point": [0.0] * 3, "half_sizes": [1.0] * 3})
+    touching = (Touching(boundary, box),)
+    with pytest.raises(InputError, match="shape 'box' .*; allowed: plane, sphere, ellipsoid"):
+        second_program.second_problem(HexMesh(points, cells, held, touching=touching), MATERIALS)
     assert second_program.main(["colum"]) == 2
     assert "did you mean 'column'?" in capsys.readouterr().err
