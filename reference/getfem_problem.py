@@ -39,13 +39,14 @@ Def x := (pow(J, -2/3) * Norm_sqr(F) - 3);
 : Grad_Test_u
 + (J - 1 - pressure / ({bulk})) * Test_pressure
 """
-# Functions of the place x that are zero on a shape, positive outside, and there as steep as a
+# Functions of the place x that are zero on a shape, positive outside, and there about as steep as a
 # distance. Without penetration, contact needs only these: at a touching node their gradient is
-# the normal. The golden has distances instead.
+# along the normal. They grow linearly along rays, as distances do: Norm_sqr lets Newton's method
+# alternate between touching and not.
 LEVELS = {
     "plane": "(x - point) . Normalized(normal)",
-    "sphere": "(Norm_sqr(x - point) / radius - radius) / 2",
-    "ellipsoid": "(Norm_sqr((x - point) ./ half_sizes) - 1) / 2 * Norm(half_sizes) / sqrt(3)",
+    "sphere": "Norm(x - point) - radius",
+    "ellipsoid": "(Norm((x - point) ./ half_sizes) - 1) * Norm(half_sizes) / sqrt(3)",
 }
 
 

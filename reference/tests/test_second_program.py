@@ -119,7 +119,7 @@ def test_obstacles(name):
         solve(problem, 2, 1e-12)
         answers.append(problem.nodal_displacement())
     (pressures,) = problems[1].multipliers()
-    assert 0 < (pressures > 0).sum()
+    assert (pressures > 0).any()
     assert np.abs(answers[0] - answers[1]).max() < SAME * np.abs(answers[1]).max()
 
 
