@@ -6,6 +6,7 @@ solver are the reference's; they affect the speed, not the answer.
 """
 
 import re
+from dataclasses import dataclass
 
 import getfem
 import numpy as np
@@ -50,13 +51,30 @@ LEVELS = {
 }
 
 
+@dataclass(frozen=True)
+class Touched:
+    """An obstacle's multipliers (n,) in Pa at the nodes of a scalar field, and its data in a model.
+
+    name: of the multipliers there. pressure: their improved values, in GetFEM's language. nodes:
+    numbers of those on the faces. stiffness: Pa/m.
+    """
+
+    name: str
+    field: getfem.MeshFem
+    pressure: str
+    nodes: np.ndarray
+    stiffness: float
+    multipliers: np.ndarray
+
+
 class GetfemProblem(Problem):
     """Equilibrium of a HexMesh with the golden's element, assembled by GetFEM.
 
     A quadrature with its points at the nodes makes contact that of nodes, and the weight of an
     element, integrated at its centre, is shared equally by its nodes: both as in the golden.
 
-    mesh: HexMesh. materials: list of Material. Raises InputError for a law that is not in LAWS.
+    mesh: HexMesh. materials: list of Material. Raises InputError for a law that is not in LAWS, and
+    for an obstacle that is not in LEVELS or gives way.
     """
 
     program = "GetFEM"
@@ -86,7 +104,7 @@ class GetfemProblem(Problem):
             for points in (self._points, self._centres)
         )
         model.add_initialized_fem_data("share", cells, self._volumes / of_centres)
-        self._levels = []
+        self._touched = []
         self._add_materials(materials)
         self._add_loads()
         self._add_obstacles(materials)
@@ -133,13 +151,12 @@ class GetfemProblem(Problem):
         """The augmented Lagrangian of each obstacle, with a multiplier at each node."""
         modulus = min(young_modulus(m.law, m.parameters) for m in materials)
         stiffness = LIMIT_PENALTY * modulus / self._volumes.min() ** (1 / 3)
-        for number, (nodes, obstacle) in enumerate(
-            (one.nodes, one.obstacle) for one in self._mesh.touching
-        ):
+        for number, touching in enumerate(self._mesh.touching):
+            obstacle = touching.obstacle
             if obstacle.shape not in LEVELS or not obstacle.limit:
                 raise InputError(
                     f"obstacle: shape {obstacle.shape!r} is not set up for GetFEM here, nor is a "
-                    f"penalty; allowed: {', '.join(LEVELS)}"
+                    f"penalty; allowed: {', '.join(LEVELS)}, without penetration"
                 )
             level = LEVELS[obstacle.shape]
             for key, value in obstacle.parameters.items():
@@ -152,26 +169,30 @@ class GetfemProblem(Problem):
             self._model.add_initialized_fem_data(name, field, np.zeros(field.nbdof()))
             pressed = f"{name} - {stiffness!r} * {level}"
             self._add(
-                f"half_sqr_pos_part({pressed}) / {stiffness!r}", self._faces(nodes), self._vertices
+                f"half_sqr_pos_part({pressed}) / {stiffness!r}",
+                self._faces(touching.nodes),
+                self._vertices,
             )
-            touching = field.basic_dof_on_region(self._region)
-            self._levels.append(
-                (name, field, f"pos_part({pressed})", touching, stiffness, np.zeros(field.nbdof()))
+            nodes = field.basic_dof_on_region(self._region)
+            values = np.zeros(field.nbdof())
+            self._touched.append(
+                Touched(name, field, f"pos_part({pressed})", nodes, stiffness, values)
             )
 
     def multipliers(self):
         """See newton.Problem."""
-        return [values for *_, values in self._levels]
+        return [one.multipliers for one in self._touched]
 
     def augment(self):
         """See newton.Problem."""
-        change = 0.0
         self._set()
-        for _, field, pressure, touching, stiffness, values in self._levels:
-            new = self._model.interpolation(pressure, field)[touching]
-            change = max(change, np.abs(new - values[touching]).max() / stiffness)
-            values[touching] = new
-        return change
+        largest = 0.0
+        for one in self._touched:
+            pressure = self._model.interpolation(one.pressure, one.field)[one.nodes]
+            change = np.abs(pressure - one.multipliers[one.nodes]).max() / one.stiffness
+            largest = max(largest, change)
+            one.multipliers[one.nodes] = pressure
+        return largest
 
     def _add(self, expression, where, points=None):
         """A term of the weak form on cells or faces (2, k), as GetFEM has them.
@@ -199,12 +220,13 @@ class GetfemProblem(Problem):
         self._model.assembly(what)
 
     def _set(self):
+        """Gives the model the unknowns, the load factor and the multipliers."""
         model = self._model
         model.set_variable("u", self.displacement.array)
         model.set_variable("pressure", self.pressure.array)
         model.set_variable("load", self.load)
-        for name, *_, values in self._levels:
-            model.set_variable(name, values)
+        for one in self._touched:
+            model.set_variable(one.name, one.multipliers)
 
     def mixed_residual(self):
         """Both rows of the mixed system: forces (N,) in N and (M,) in m^3; NaN where inverted."""

@@ -23,8 +23,9 @@ SAME = 1e-11
 YEOH = Material("yeoh", {"c1": 500.0, "c2": 200.0, "c3": 50.0, "bulk_modulus": 4e4}, 1500.0)
 
 
-def test_a_golden_is_found_again():
-    record = second_program.distance("bending-1-nu0.49")
+@pytest.mark.parametrize("name", ["bending-1-nu0.49", "hertz-4"])
+def test_a_golden_is_found_again(name):
+    record = second_program.distance(name)
     assert record["distance"] < second_program.LIMIT and record["elements"] > 0
 
 
