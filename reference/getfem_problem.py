@@ -5,12 +5,17 @@ derived by hand, whereas FEniCSx derives them from the energy. Only Newton's met
 solver are the reference's; they affect the speed, not the answer.
 """
 
+import re
+from dataclasses import dataclass
+
 import getfem
 import numpy as np
 import scipy.sparse
 
 from common.errors import InputError
 from common.hexahedron import CORNERS, LEXICOGRAPHIC
+from contact import LIMIT_PENALTY
+from laws import young_modulus
 from newton import Problem, Unknown, condensed
 
 getfem.util_trace_level(0)
@@ -35,12 +40,41 @@ Def x := (pow(J, -2/3) * Norm_sqr(F) - 3);
 : Grad_Test_u
 + (J - 1 - pressure / ({bulk})) * Test_pressure
 """
+# Functions of the place x that are zero on a shape, positive outside, and there about as steep as a
+# distance. Without penetration, contact needs only these: at a touching node their gradient is
+# along the normal. They grow linearly along rays, as distances do: Norm_sqr lets Newton's method
+# alternate between touching and not.
+LEVELS = {
+    "plane": "(x - point) . Normalized(normal)",
+    "sphere": "Norm(x - point) - radius",
+    "ellipsoid": "(Norm((x - point) ./ half_sizes) - 1) * Norm(half_sizes) / sqrt(3)",
+}
+
+
+@dataclass(frozen=True)
+class Touched:
+    """An obstacle's multipliers (n,) in Pa at the nodes of a scalar field, and its data in a model.
+
+    name: of the multipliers there. pressure: their improved values, in GetFEM's language. nodes:
+    numbers of those on the faces. stiffness: Pa/m.
+    """
+
+    name: str
+    field: getfem.MeshFem
+    pressure: str
+    nodes: np.ndarray
+    stiffness: float
+    multipliers: np.ndarray
 
 
 class GetfemProblem(Problem):
     """Equilibrium of a HexMesh with the golden's element, assembled by GetFEM.
 
-    mesh: HexMesh. materials: list of Material. Raises InputError for a law that is not in LAWS.
+    A quadrature with its points at the nodes makes contact that of nodes, and the weight of an
+    element, integrated at its centre, is shared equally by its nodes: both as in the golden.
+
+    mesh: HexMesh. materials: list of Material. Raises InputError for a law that is not in LAWS, and
+    for an obstacle that is not in LEVELS or gives way.
     """
 
     program = "GetFEM"
@@ -60,8 +94,20 @@ class GetfemProblem(Problem):
         intervals = (model.interval_of_variable(name) for name in ("u", "pressure"))
         self._rows = [slice(first, first + size) for first, size in intervals]
         self._body, self._mesh, self._region = body, mesh, 0
+        self._centres, self._vertices = (
+            getfem.MeshIm(body, getfem.Integ(f"IM_{rule}_PARALLELEPIPED(3,1)"))
+            for rule in ("GAUSS", "NC")
+        )
+        cells = _field(body, 1, "FEM_QK(3,0)")
+        self._volumes, of_centres = (
+            getfem.asm_generic(points, 1, "Test_q", -1, "q", True, cells, np.zeros(cells.nbdof()))
+            for points in (self._points, self._centres)
+        )
+        model.add_initialized_fem_data("share", cells, self._volumes / of_centres)
+        self._touched = []
         self._add_materials(materials)
         self._add_loads()
+        self._add_obstacles(materials)
         self.displacement = Unknown(self._dofs.size)
         self.pressure = Unknown(len(corners))
         self.impose(mesh, self._dofs, self._dofs.size)
@@ -83,7 +129,7 @@ class GetfemProblem(Problem):
             self._add(values + FORM.format(slope=slope, bulk=bulk).replace("\n", " "), where)
             if self._mesh.gravity:
                 weight = material.density * self._mesh.acceleration()
-                self._add(f"-load * {_text(weight)} . Test_u", where)
+                self._add(f"-load * share * {_text(weight)} . Test_u", where, self._centres)
 
     def _add_loads(self):
         for traction in self._mesh.tractions:
@@ -101,11 +147,61 @@ class GetfemProblem(Problem):
                 moved = "((u . Normal) * Normal)" if surface.only_normal else "u"
                 self._add(f"{surface.stiffness!r} * {moved} . Test_u", faces)
 
-    def _add(self, expression, where):
-        """A term of the weak form on cells or faces (2, k), as GetFEM has them."""
+    def _add_obstacles(self, materials):
+        """The augmented Lagrangian of each obstacle, with a multiplier at each node."""
+        modulus = min(young_modulus(m.law, m.parameters) for m in materials)
+        stiffness = LIMIT_PENALTY * modulus / self._volumes.min() ** (1 / 3)
+        for number, touching in enumerate(self._mesh.touching):
+            obstacle = touching.obstacle
+            if obstacle.shape not in LEVELS or not obstacle.limit:
+                raise InputError(
+                    f"obstacle: shape {obstacle.shape!r} is not set up for GetFEM here, nor is a "
+                    f"penalty; allowed: {', '.join(LEVELS)}, without penetration"
+                )
+            level = LEVELS[obstacle.shape]
+            for key, value in obstacle.parameters.items():
+                level = re.sub(rf"\b{key}\b", _text(value), level)
+            place = f"(X + u - load * {_text(obstacle.displacement)})"
+            level = re.sub(r"\bx\b", place, level)
+            level = f"{-1 if obstacle.inside else 1} * ({level})"
+            name = f"multiplier{number}"
+            field = _field(self._body, 1, "FEM_QK(3,1)")
+            self._model.add_initialized_fem_data(name, field, np.zeros(field.nbdof()))
+            pressed = f"{name} - {stiffness!r} * {level}"
+            self._add(
+                f"half_sqr_pos_part({pressed}) / {stiffness!r}",
+                self._faces(touching.nodes),
+                self._vertices,
+            )
+            nodes = field.basic_dof_on_region(self._region)
+            values = np.zeros(field.nbdof())
+            self._touched.append(
+                Touched(name, field, f"pos_part({pressed})", nodes, stiffness, values)
+            )
+
+    def multipliers(self):
+        """See newton.Problem."""
+        return [one.multipliers for one in self._touched]
+
+    def augment(self):
+        """See newton.Problem."""
+        self._set()
+        largest = 0.0
+        for one in self._touched:
+            pressure = self._model.interpolation(one.pressure, one.field)[one.nodes]
+            change = np.abs(pressure - one.multipliers[one.nodes]).max() / one.stiffness
+            largest = max(largest, change)
+            one.multipliers[one.nodes] = pressure
+        return largest
+
+    def _add(self, expression, where, points=None):
+        """A term of the weak form on cells or faces (2, k), as GetFEM has them.
+
+        points: the quadrature; default: the golden's.
+        """
         self._region += 1
         self._body.set_region(self._region, where)
-        self._model.add_nonlinear_term(self._points, expression, self._region)
+        self._model.add_nonlinear_term(points or self._points, expression, self._region)
 
     def _faces(self, nodes):
         """(2, k) of the boundary faces within a set: cells, local faces. nodes: (n,) bool."""
@@ -120,11 +216,17 @@ class GetfemProblem(Problem):
         return self.displacement.array[self._dofs]
 
     def _assemble(self, what):
+        self._set()
+        self._model.assembly(what)
+
+    def _set(self):
+        """Gives the model the unknowns, the load factor and the multipliers."""
         model = self._model
         model.set_variable("u", self.displacement.array)
         model.set_variable("pressure", self.pressure.array)
         model.set_variable("load", self.load)
-        model.assembly(what)
+        for one in self._touched:
+            model.set_variable(one.name, one.multipliers)
 
     def mixed_residual(self):
         """Both rows of the mixed system: forces (N,) in N and (M,) in m^3; NaN where inverted."""

@@ -46,6 +46,10 @@ class SfepyProblem(Problem):
                 raise InputError(f"SfePy has no term for the law {material.law!r}")
             if material.volumetric != "quadratic":
                 raise InputError(f"SfePy has no {material.volumetric} volumetric term")
+        if mesh.touching:
+            raise InputError("obstacles are not set up for SfePy here")
+        if mesh.gravity and not _has_parallelepipeds(mesh):
+            raise InputError("SfePy integrates weight, which the golden's nodes share equally")
         self._mesh = mesh
         n_nodes, n_cells = len(mesh.points), len(mesh.cells)
         with contextlib.redirect_stdout(io.StringIO()):
@@ -192,3 +196,12 @@ class SfepyProblem(Problem):
         uu, up, pu, pp = matrix[:n, :n], matrix[:n, n:], matrix[n:, :n], matrix[n:, n:]
         assert abs(pp - scipy.sparse.diags(pp.diagonal())).max() == 0, "pressure is not local"
         return condensed((uu, up, pu, pp), force, dilatation)
+
+
+def _has_parallelepipeds(mesh):
+    """Whether opposite edges of each cell of a HexMesh are equal."""
+    corners = mesh.points[mesh.cells]
+    edges = corners[:, [1, 2, 5, 6]] - corners[:, [0, 3, 4, 7]]  # along xi
+    others = corners[:, [3, 7]] - corners[:, [0, 4]]
+    bent = max(np.ptp(edges, axis=1).max(), np.ptp(others, axis=1).max())
+    return bent <= 1e-9 * np.ptp(mesh.points)

@@ -10,8 +10,9 @@ import second_program
 from blocks import MATERIALS, distorted_block
 from case_file import Gravity, Material
 from common.errors import InputError
-from hexahedra import Condition, HexMesh, Surface, traction
+from hexahedra import Condition, HexMesh, Surface, Touching, traction
 from newton import solve
+from obstacles import Obstacle
 from problem import MixedProblem
 
 SfepyProblem = pytest.importorskip("sfepy_problem").SfepyProblem
@@ -22,8 +23,9 @@ SAME = 1e-11
 YEOH = Material("yeoh", {"c1": 500.0, "c2": 200.0, "c3": 50.0, "bulk_modulus": 4e4}, 1500.0)
 
 
-def test_a_golden_is_found_again():
-    record = second_program.distance("bending-1-nu0.49")
+@pytest.mark.parametrize("name", ["bending-1-nu0.49", "hertz-4"])
+def test_a_golden_is_found_again(name):
+    record = second_program.distance(name)
     assert record["distance"] < second_program.LIMIT and record["elements"] > 0
 
 
@@ -87,6 +89,41 @@ def test_materials_and_loads(program, stiff, only_normal, weight):
     assert np.abs(answers[0] - answers[1]).max() < SAME * np.abs(answers[1]).max()
 
 
+# Obstacles rise into the foot of the block; the cavity lifts its corners.
+OBSTACLES = {
+    "plane": ({"point": [0.0, 0.0, 0.0], "normal": [0.2, 0.0, 2.0]}, False, 0.04),
+    "sphere": ({"point": [0.6, 0.4, -0.7], "radius": 0.7}, False, 0.04),
+    "ellipsoid": ({"point": [0.6, 0.4, -0.5], "half_sizes": [0.9, 0.7, 0.5]}, False, 0.04),
+    "cavity": ({"point": [0.5, 0.5, 0.5], "half_sizes": [0.9, 1.0, 0.8]}, True, 0.1),
+}
+
+
+@pytest.mark.parametrize("name", OBSTACLES)
+def test_obstacles(name):
+    """Distorted elements whose weight and contact are the nodes', as in the golden."""
+    parameters, inside, rise = OBSTACLES[name]
+    points, cells, _ = distorted_block(n=2)
+    foot, top = points[:, 2] < 1e-9, points[:, 2] > 1 - 1e-9
+    shape = "ellipsoid" if inside else name
+    obstacle = Obstacle("foot", shape, parameters, (0.0, 0.0, rise), inside)
+    mesh = HexMesh(
+        points,
+        cells,
+        (Condition(top, (0, 1, 2), np.zeros_like(points)),),
+        gravity=(Gravity((0.01, 0.0, -0.03)),),
+        touching=(Touching(foot, obstacle),),
+    )
+    materials = [dataclasses.replace(MATERIALS[0], density=1000.0)]
+    problems = GetfemProblem(mesh, materials), MixedProblem(mesh, materials)
+    answers = []
+    for problem in problems:
+        solve(problem, 2, 1e-12)
+        answers.append(problem.nodal_displacement())
+    (pressures,) = problems[1].multipliers()
+    assert (pressures > 0).any()
+    assert np.abs(answers[0] - answers[1]).max() < SAME * np.abs(answers[1]).max()
+
+
 def test_unsupported_problems_are_refused(capsys):
     points, cells, boundary = distorted_block(n=2)
     held = (Condition(boundary, (0, 1, 2), np.zeros_like(points)),)
@@ -97,5 +134,9 @@ def test_unsupported_problems_are_refused(capsys):
         SfepyProblem(HexMesh(points, cells, held, surfaces=springs), MATERIALS)
     with pytest.raises(InputError, match="there is no weak form of 'ogden' for GetFEM"):
         second_program.second_problem(HexMesh(points, cells, held), [Material("ogden", {})])
+    box = Obstacle("foot", "box", {"point": [0.0] * 3, "half_sizes": [1.0] * 3})
+    touching = (Touching(boundary, box),)
+    with pytest.raises(InputError, match="shape 'box' .*; allowed: plane, sphere, ellipsoid"):
+        second_program.second_problem(HexMesh(points, cells, held, touching=touching), MATERIALS)
     assert second_program.main(["colum"]) == 2
     assert "did you mean 'column'?" in capsys.readouterr().err
