@@ -135,11 +135,18 @@ void ElementTransfer::gather() {
 }
 
 void ElementTransfer::gather_contact() {
-  if (without_contact_.empty()) without_contact_ = grid_.problems();
+  if (without_contact_.empty()) {
+    without_contact_ = grid_.problems();
+    has_contact_.assign(contents_.size(), 0);
+  }
   grid_.for_each_line(0, [&](std::size_t first, std::size_t count) {
     for (std::size_t box = first; box < first + count; ++box) {
+      const bool touches = std::ranges::any_of(
+          contents_[box].rows, [&](std::uint32_t row) { return elements_.touching_at(row) != nullptr; });
+      if (!touches && has_contact_[box] == 0) continue;
+      has_contact_[box] = touches ? 1 : 0;
       grid_.problems()[box] = without_contact_[box];
-      add_contact(contents_[box], grid_.problems()[box]);
+      if (touches) add_contact(contents_[box], grid_.problems()[box]);
     }
   });
 }
@@ -189,15 +196,14 @@ BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
 }
 
 void ElementTransfer::add_contact(const Contents& contents, BoxProblem& problem) const {
-  const auto& touching = elements_.touching();
   for (const std::uint32_t row : contents.rows) {
-    const auto found = std::ranges::lower_bound(touching, row, {}, &SaddleLevel::Touching::row);
-    if (found == touching.end() || found->row != row) continue;
+    const SaddleLevel::Touching* one = elements_.touching_at(row);
+    if (one == nullptr) continue;
     const auto w = weights(places_[row].local);
     for (std::size_t a = 0; a < 24; ++a) {
       for (std::size_t b = 0; b < 24; ++b) {
         const int i = static_cast<int>(a % 3), j = static_cast<int>(b % 3);
-        problem.A[24 * a + b] += w[a / 3] * w[b / 3] * found->ground(i, j);
+        problem.A[24 * a + b] += w[a / 3] * w[b / 3] * one->ground(i, j);
       }
     }
   }

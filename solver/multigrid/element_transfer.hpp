@@ -52,6 +52,7 @@ class ElementTransfer {
   std::vector<std::size_t> boxes_;      // of cells
   std::vector<Contents> contents_;
   std::vector<BoxProblem> without_contact_;      // empty if there has been none since `gather`
+  std::vector<char> has_contact_;                // whether problems of boxes have some
   std::vector<std::array<Row<float>, 8>> sums_;  // of the corners of boxes
 };
 

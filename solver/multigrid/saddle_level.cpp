@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "math/matrix.hpp"
 #include "math/row_loops.hpp"
@@ -85,21 +84,23 @@ void SaddleLevel::resize(std::size_t rows, std::size_t cells) {
 
 void SaddleLevel::set_contact(const std::vector<Spring>& springs) {
   contact_ = springs;
-  std::map<std::size_t, Touching> by_row;
+  touching_.clear();
+  place_of_row_.assign(free_.size(), -1);
   for (const Spring& spring : springs) {
     float sum = 0.0f;
     for (std::size_t n = 0; n < spring.size; ++n) sum += std::abs(spring.weights[n]);
     for (std::size_t n = 0; n < spring.size; ++n) {
-      Touching& one = by_row.try_emplace(static_cast<std::size_t>(spring.nodes[n]), Touching{}).first->second;
+      const auto row = static_cast<std::size_t>(spring.nodes[n]);
+      int& place = place_of_row_[row];
+      if (place < 0) {
+        place = static_cast<int>(touching_.size());
+        touching_.push_back({.row = row});
+      }
+      Touching& one = touching_[static_cast<std::size_t>(place)];
       // The square of a sum is at most the sum of squares with these factors.
       add_square(sum * std::abs(spring.weights[n]), spring.root, one.stiffness);
       if (spring.size == 1) add_square(1.0f, spring.root, one.ground);
     }
-  }
-  touching_.clear();
-  for (auto& [row, one] : by_row) {
-    one.row = row;
-    touching_.push_back(one);
   }
   touching_forces_.resize(touching_.size());
 }
@@ -118,9 +119,7 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   for_each_corner([&](std::size_t cell, std::size_t row, const std::array<float, 3>& b) {
     const Row<float>& D = diagonal_[row];
     Row<float> Db{{D[0] * b[0], D[1] * b[1], D[2] * b[2]}};
-    const auto found = std::ranges::lower_bound(touching_, row, {}, &Touching::row);
-    if (found != touching_.end() && found->row == row)
-      add_product(1.0f, found->change, {{b[0], b[1], b[2]}}, Db);
+    if (const Touching* one = touching_at(row)) add_product(1.0f, one->change, {{b[0], b[1], b[2]}}, Db);
     const float own = Db[0] * b[0] + Db[1] * b[1] + Db[2] * b[2];
     schur_[cell] += own;
     if (!(own > 0.0f)) return;
@@ -140,8 +139,8 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
 Tensor<float> SaddleLevel::relaxation(std::size_t row) const {
   Tensor<float> full{};
   for (int i = 0; i < 3; ++i) full(i, i) = diagonal_[row][static_cast<std::size_t>(i)];
-  const auto found = std::ranges::lower_bound(touching_, row, {}, &Touching::row);
-  return found != touching_.end() && found->row == row ? full + found->change : full;
+  const Touching* one = touching_at(row);
+  return one != nullptr ? full + one->change : full;
 }
 
 void SaddleLevel::relax(float share, const Rows<float>& f, Rows<float>& u) const {

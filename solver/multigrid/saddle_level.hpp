@@ -71,8 +71,14 @@ class SaddleLevel {
     Tensor<float> change;     // what they add to D, m/N
   };
 
-  /// These rows, in ascending order.
+  /// These rows, in the order of the springs.
   const std::vector<Touching>& touching() const { return touching_; }
+
+  /// That of a row; null if there is none.
+  const Touching* touching_at(std::size_t row) const {
+    const int place = place_of_row_.empty() ? -1 : place_of_row_[row];
+    return place < 0 ? nullptr : &touching_[static_cast<std::size_t>(place)];
+  }
 
   /// The diagonal of D (m/N) without springs of contact.
   const Rows<float>& diagonal() const { return diagonal_; }
@@ -96,9 +102,10 @@ class SaddleLevel {
 
   MixedBlocks blocks_;
   Rows<float> free_;
-  std::vector<float> compliance_;   // C
-  std::vector<Spring> contact_;     // springs of contact
-  std::vector<Touching> touching_;  // in ascending order
+  std::vector<float> compliance_;  // C
+  std::vector<Spring> contact_;    // springs of contact
+  std::vector<Touching> touching_;
+  std::vector<int> place_of_row_;  // in these, or -1
 
  private:
   void relax_pressures(const MixedVector& b, MixedVector& x);
