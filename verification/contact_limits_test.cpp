@@ -183,5 +183,15 @@ TEST(ContactLimits, leaves_held_nodes_alone) {
   }
 }
 
+/// Friction that drives what slides is none.
+TEST(ContactLimits, refuses_negative_friction) {
+  const auto broken = [](double last) {
+    const auto rule = Contact{.label = "pair", .curve = {{0.0, 1.0}, {1.0, last}}}.broken_rule();
+    return rule ? rule->parameter : "";
+  };
+  EXPECT_EQ(broken(0.0), "");
+  EXPECT_EQ(broken(-0.1), "factors");
+}
+
 }  // namespace
 }  // namespace sandglass::verification

@@ -207,17 +207,10 @@ TEST_F(Device, every_load_acts_on_a_state_that_stays_there) {
   }
 }
 
-/// Steps that prove too long are taken again from the last check (largest_frequency_test.cpp has this body),
+/// Steps that prove too long are taken again from the last check,
 /// whether they are taken here or there.
 TEST_F(Device, a_state_returns_to_the_last_check) {
-  RandomScene random(20, 37);
-  Scene scene = random.scene();
-  scene.settings.quasi_static = false;
-  DynamicsSettings& settings = scene.settings.dynamics;
-  settings.body_frequency = 1;
-  const NodalField rest(scene.mesh.points.size());
-  settings.duration = 1.3e4 * stable_step(Model(scene, {"tl-mean-dilatation"}), rest).step;
-  settings.ramp_time = 0.5 * settings.duration;
+  const Scene scene = scene_with_too_long_steps();
   Recorder recorder;
   MethodChoice choice{.method = "tl-mean-dilatation"};
   choice.processor = processor_;

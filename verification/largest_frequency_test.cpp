@@ -205,14 +205,7 @@ TEST(LargestFrequency, allows_stable_motions) {
 /// steps since then are repeated with shorter ones, and the motion is like one with short steps throughout:
 /// it neither gains nor loses more energy than a change of steps may cause.
 TEST(LargestFrequency, steps_that_prove_too_long_are_taken_again) {
-  RandomScene random(20, 37);
-  Scene scene = random.scene();
-  scene.settings.quasi_static = false;
-  DynamicsSettings& settings = scene.settings.dynamics;
-  settings.body_frequency = 1;
-  const NodalField rest(scene.mesh.points.size());
-  settings.duration = 1.3e4 * stable_step(Model(scene, {"tl-mean-dilatation"}), rest).step;
-  settings.ramp_time = 0.5 * settings.duration;
+  const Scene scene = scene_with_too_long_steps();
   Recorder recorder;
   const Motion motion = integrate(Model(scene, {"tl-mean-dilatation"}), recorder);
   EXPECT_GT(motion.repeated, 0);

@@ -9,6 +9,10 @@
 namespace sandglass {
 
 std::optional<BrokenRule> Contact::broken_rule() const {
+  for (const double factor : curve.factors) {
+    if (factor < 0.0)
+      return BrokenRule{"factors", fmt::format("= ..., {}, ... must not be negative", factor)};
+  }
   return broken_rule_of_name(label);
 }
 

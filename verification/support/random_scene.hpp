@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "mesh/cylinder.hpp"
+#include "solve/stable_step.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
@@ -82,5 +83,17 @@ class RandomScene {
   NodeSets sets_;
   std::array<double, 3> size_{};
 };
+
+/// A body of which elements lose stability between two checks, unforeseen by the step of the first check.
+inline Scene scene_with_too_long_steps() {
+  Scene scene = RandomScene(20, 37).scene();
+  scene.settings.quasi_static = false;
+  DynamicsSettings& settings = scene.settings.dynamics;
+  settings.body_frequency = 1;
+  const NodalField rest(scene.mesh.points.size());
+  settings.duration = 1.3e4 * stable_step(Model(scene, {"tl-mean-dilatation"}), rest).step;
+  settings.ramp_time = 0.5 * settings.duration;
+  return scene;
+}
 
 }  // namespace sandglass::verification
