@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lattice import lattice
 
 import sandglass as sg
 
@@ -97,14 +98,7 @@ def bowl_on_block(n, layers, edges):
     s = np.linspace(-1, 1, edges + 1)
     across = np.sign(s) * (0.55 * np.abs(s) + 0.45 * s**2)
     down = -1 - 2 * np.linspace(1, 0, edges + 1) ** 1.3
-    z, y, x = np.meshgrid(down, across, across, indexing="ij")
-    block = np.stack([x, y, z], axis=-1).reshape(-1, 3)
-    node = np.arange(len(block)).reshape([edges + 1] * 3)
-    corners = [
-        node[k : edges + k, j : edges + j, i : edges + i].ravel()
-        for k in (0, 1)
-        for j, i in ((0, 0), (0, 1), (1, 1), (1, 0))
-    ]
+    block, block_cells, _ = lattice(across, across, down)
     all_points = np.concatenate([block, bowl])
     nodes, r = np.arange(len(all_points)), np.linalg.norm(all_points, axis=1)
     is_bowl, z = nodes >= len(block), all_points[:, 2]
@@ -115,7 +109,7 @@ def bowl_on_block(n, layers, edges):
         "rim": nodes[is_bowl & (np.abs(z) < 1e-9)],
     }
     elements = {"block": np.arange(edges**3)}
-    cells = np.concatenate([np.stack(corners, axis=-1), bowl_cells + len(block)])
+    cells = np.concatenate([block_cells, bowl_cells + len(block)])
     return all_points, cells, sets, elements
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lattice import lattice
 
 import sandglass as sg
 
@@ -12,11 +13,7 @@ FRICTION = 0.5
 
 def gripped_block(method, n=6):
     """The block on a floor between jaws that just touch it, under its weight."""
-    z, y, x = np.meshgrid(*[np.linspace(0, EDGE, n + 1)] * 3, indexing="ij")
-    points = np.stack([x, y, z], axis=-1).reshape(-1, 3)
-    node = np.arange((n + 1) ** 3).reshape([n + 1] * 3)
-    square = [(0, 0), (0, 1), (1, 1), (1, 0)]  # (y, x) of corners
-    corners = [node[c : n + c, b : n + b, a : n + a].ravel() for c in (0, 1) for b, a in square]
+    points, cells, node = lattice(*[np.linspace(0, EDGE, n + 1)] * 3)
     sets = {"west": node[:, :, 0].ravel(), "east": node[:, :, n].ravel(), "foot": node[0].ravel()}
     jaw = {"shape": "plane", "friction": FRICTION, "method": method}
     loads = [
@@ -27,7 +24,7 @@ def gripped_block(method, n=6):
         sg.Dynamics(duration=1.0, damping=20.0),
     ]
     law = sg.NeoHookean(young_modulus=3000.0, poisson_ratio=0.45, density=DENSITY)
-    mesh = sg.Mesh(points, np.stack(corners, axis=-1), sets)
+    mesh = sg.Mesh(points, cells, sets)
     return sg.Body(mesh, law, loads).simulation(method="tl-perturbation")
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from lattice import lattice
 
 import sandglass
 
@@ -39,12 +40,8 @@ damping = 2.0
 
 def cube(n, z):
     """Points (m) and cells of a cube of 1 m with n elements along each edge and its foot at z."""
-    k, j, i = np.meshgrid(*[np.arange(n + 1)] * 3, indexing="ij")
-    points = np.stack([i, j, k], axis=-1).reshape(-1, 3) / n + [0, 0, z]
-    node = np.arange((n + 1) ** 3).reshape([n + 1] * 3)
-    square = [(0, 0), (0, 1), (1, 1), (1, 0)]  # (y, x) of corners
-    corners = [node[c : n + c, b : n + b, a : n + a].ravel() for c in (0, 1) for b, a in square]
-    cells = np.stack(corners, axis=-1)
+    edge = np.arange(n + 1) / n
+    points, cells, _ = lattice(edge, edge, edge + z)
     return points, cells
 
 

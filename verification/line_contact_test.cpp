@@ -8,36 +8,28 @@
 
 #include "problem/model.hpp"
 #include "solve/central_difference.hpp"
+#include "support/graded.hpp"
 #include "support/pressed.hpp"
 #include "support/two_bodies.hpp"
 
 namespace sandglass::verification {
 namespace {
 
-/// A block of unit thickness, `size` wide to both sides and `size` deep, whose surface bulges towards z = 0
-/// like a cylinder of the radius R, or is plane for R = 0. Edges grow from the origin on.
+/// A block of unit thickness, as wide to both sides as it is deep, whose surface bulges towards z = 0 like a
+/// cylinder of the radius R, or is plane for R = 0. Edges are graded from the origin.
 struct Block {
   double R;     ///< m
   int n;        ///< elements to each side and in depth
   double side;  ///< -1: below z = 0, 1: above
-  double size, grade;
-
-  /// Where the share s of the way is, from the origin on, m.
-  double graded(double s) const { return size * std::sinh(grade * s) / std::sinh(grade); }
+  Graded graded;
 
   Mesh mesh() const {
     return lattice({2 * n, 1, n}, [&](const Vector& s) {
       const double x = graded(2.0 * s[0] - 1.0), depth = graded(side > 0.0 ? s[2] : 1.0 - s[2]);
       const double round = std::min(std::abs(x), 0.5 * R);
       const double bulge = R > 0.0 ? R - std::sqrt(R * R - round * round) : 0.0;
-      return Vector{x, s[1], side * (depth + bulge * (1.0 - depth / size))};
+      return Vector{x, s[1], side * (depth + bulge * (1.0 - depth / graded.size))};
     });
-  }
-
-  /// The width of the surface that belongs to a node at x (m), m.
-  double width_at(double x) const {
-    const double s = std::asinh(x / size * std::sinh(grade)) / grade, h = 1.0 / n;
-    return 0.5 * (graded(s + h) - graded(s - h));
   }
 
   /// The nodes of the surface, and of the opposite face.
@@ -88,7 +80,7 @@ struct LineContact {
     c.displacements = {{"all", {}, {false, true, false}},
                        {"foot", {}, {true, false, true}},
                        {"top", {0.0, 0.0, -press}, {pull == 0.0, false, true}}};
-    const double ramp = 12.0 * lower.size;
+    const double ramp = 12.0 * lower.graded.size;
     if (pull != 0.0) {
       c.forces.of<DeadForce>() = {
           {.set = "top", .total = {pull, 0.0, 0.0}, .curve = {{1.5 * ramp, 3.0 * ramp}, {0.0, 1.0}}}};
@@ -96,7 +88,7 @@ struct LineContact {
     c.forces.of<Contact>() = {pair_of("under", "over", Contact::Method::kinematic, friction)};
     c.dynamics.ramp_time = ramp;
     c.dynamics.duration = (pull == 0.0 ? 2.0 : 6.0) * ramp;
-    c.dynamics.damping = (pull == 0.0 ? 1.5 : 0.7) / lower.size;
+    c.dynamics.damping = (pull == 0.0 ? 1.5 : 0.7) / lower.graded.size;
     const Scene scene = make_scene(c, bodies.mesh, sets, {{"above", above}});
     const Model model(scene, {"linear"});
     Recorder recorder;
@@ -114,7 +106,7 @@ struct LineContact {
       square_arm_of_shear += q * x * x;
       if (std::abs(x) > 0.25 * a) continue;
       middle += p;
-      width += lower.width_at(x);
+      width += lower.graded.width_at(x, lower.n);
     }
     EXPECT_NEAR(pressed, F, 1e-3 * F);  // at rest
     middle /= 0.5 * width;              // the width is that of two nodes
@@ -136,8 +128,9 @@ double mean_in_the_middle(const LineContact& contact) {
 /// have the mean square arm a^2/4. Found: a + 1.5 %, pressure + .2 %.
 TEST(LineContact, meets_hertz_for_a_roller_on_a_block) {
   const Stiffness E{70000.0, 210000.0, 0.3};
-  const double R = 50.0, size = 200.0;
-  const LineContact roller({0.0, 24, -1.0, size, 5.0}, {R, 20, 1.0, size, 5.0}, E, R, 1.5065, 0.0, 0.0);
+  const double R = 50.0;
+  const Graded graded{200.0, 5.0};
+  const LineContact roller({0.0, 24, -1.0, graded}, {R, 20, 1.0, graded}, E, R, 1.5065, 0.0, 0.0);
   EXPECT_NEAR(roller.F, 35000.0, 35.0);
   EXPECT_NEAR(roller.a, 6.2146, 0.001 * 6.2146);
   EXPECT_NEAR(largest_pressure(roller), 3585.36, 0.001 * 3585.36);
@@ -151,8 +144,9 @@ TEST(LineContact, meets_hertz_for_a_roller_on_a_block) {
 /// test, F = 10, Q = .936 and mu = .2, a = .68078 and c = .49651. Found: a + .9 %, c -.4 %.
 TEST(LineContact, sticks_in_the_middle_of_two_cylinders) {
   const Stiffness E{200.0, 200.0, 0.3};
-  const double R = 8.0, size = 16.0, mu = 0.2, Q = 0.93616;
-  const LineContact pair({R, 24, -1.0, size, 4.0}, {R, 20, 1.0, size, 4.0}, E, 0.5 * R, 0.2283, Q, mu);
+  const double R = 8.0, mu = 0.2, Q = 0.93616;
+  const Graded graded{16.0, 4.0};
+  const LineContact pair({R, 24, -1.0, graded}, {R, 20, 1.0, graded}, E, 0.5 * R, 0.2283, Q, mu);
   const double c = pair.a * std::sqrt(1.0 - Q / (mu * pair.F));
   EXPECT_NEAR(pair.Q, Q, 0.005 * Q);
   EXPECT_NEAR(pair.a, 0.68078, 0.002 * 0.68078);

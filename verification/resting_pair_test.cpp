@@ -75,8 +75,8 @@ TEST(RestingPair, answers_as_one_block) {
   }
 }
 
-/// The first level predicts free fall, here of two and a half elements: were it taken at once, points would
-/// be behind the other surface by more than an element, where they are not found.
+/// The first load level predicts a free fall of two and a half elements. In one move, points would end more
+/// than an element behind the other surface, where the search does not find them.
 TEST(RestingPair, finds_what_meets_far_from_the_start) {
   const double gap = 0.3, fall = 0.1;
   const TwoBodies near = blocks(6, 0.0, fall), far = blocks(6, gap, fall);

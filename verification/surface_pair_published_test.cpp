@@ -8,6 +8,7 @@
 
 #include "sandglass/simulation.hpp"
 #include "solve/central_difference.hpp"
+#include "support/graded.hpp"
 #include "support/pressed.hpp"
 #include "support/two_bodies.hpp"
 
@@ -104,14 +105,13 @@ TEST(SurfacePair, passes_the_patch_test) {
 /// high: half-spaces would move by 1 % of d at their ends. The forces at both ends and between them are the
 /// same when the motion is over.
 TEST(SurfacePair, meets_the_closed_form_of_two_spheres) {
-  const double R = 2.0, E = 1.40625e7, size = 10.0, d = 0.01, a = 0.1, F = 1e4,
-               p0 = 1.5 * F / (std::numbers::pi * a * a), grade = 6.0;
-  const auto graded = [&](double s) { return size * std::sinh(grade * s) / std::sinh(grade); };
+  const double R = 2.0, E = 1.40625e7, d = 0.01, a = 0.1, F = 1e4, p0 = 1.5 * F / (std::numbers::pi * a * a);
+  const Graded graded{10.0, 6.0};
   const auto sphere = [&](int edges, double side) {
     return lattice({edges, edges, edges}, [&](const Vector& s) {
       const double x = graded(s[0]), y = graded(s[1]), depth = graded(side > 0.0 ? s[2] : 1.0 - s[2]),
                    bulge = 0.5 / R * std::min(x * x + y * y, 1.0);
-      return Vector{x, y, side * (depth + bulge * (1.0 - depth / size))};
+      return Vector{x, y, side * (depth + bulge * (1.0 - depth / graded.size))};
     });
   };
   const int n = 16, m = 14;
@@ -157,10 +157,7 @@ TEST(SurfacePair, meets_the_closed_form_of_two_spheres) {
     const Vector& X = points[at(node)];
     if (radius(X) > a / 2.0) continue;
     double area = 1.0;
-    for (const double x : {X[0], X[1]}) {
-      const double s = std::asinh(x / size * std::sinh(grade)) / grade;
-      area *= 0.5 * (graded(s + 1.0 / n) - (x > 0.0 ? graded(s - 1.0 / n) : 0.0));
-    }
+    for (const double x : {X[0], X[1]}) area *= (x > 0.0 ? 1.0 : 0.5) * graded.width_at(x, n);
     expected += area * p0 * std::sqrt(1.0 - radius(X) * radius(X) / (a * a));
   }
   EXPECT_NEAR(middle.force, expected, 0.03 * expected);
