@@ -45,11 +45,9 @@ void add_flops_command(CLI::App& app) {
     rows.insert(rows.end(), laws.begin(), laws.end());
     const auto programs = count_programs();
     fmt::print(
-        "\nthe force of an element as a straight-line program (`sandglass kernels`), equal operations "
-        "shared:\n"
-        "instructions, if products and sums are fused; the longest chain; values alive in the order as "
-        "written;"
-        "\nthe share of the peak that the mix allows\n{:<25}{:>11}{:>13}{:>7}{:>7}{:>7}\n",
+        "\nthe force of an element as a straight-line program (`sandglass kernels`), equal operations shared:"
+        "\ninstructions with products and sums fused; the longest chain; values alive at once;"
+        "\nthe share of the peak that this mix of operations allows\n{:<25}{:>11}{:>13}{:>7}{:>7}{:>7}\n",
         "method", "operations", "instructions", "chain", "alive", "peak");
     for (const auto& [method, shape] : programs) {
       fmt::print("{:<25}{:>11}{:>13}{:>7}{:>7}{:>5.0f} %\n", method, shape.operations, shape.instructions(),

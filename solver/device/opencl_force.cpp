@@ -149,13 +149,12 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
              nodal_sums_->f),
          first_element, number});
   }
-  const bool reads_coordinates =
-      std::ranges::count(jacobian_program(choice.method).arrays, "X", &KernelArray::name) > 0;
+  const ForceProgram jacobian = jacobian_program(choice.method);
+  const bool reads_coordinates = std::ranges::count(jacobian.arrays, "X", &KernelArray::name) > 0;
   traffic_ = {static_cast<int>(order.laws.size()), results + places.size() * sizeof(int) +
                                                        (constants.size() + axes.size()) * sizeof(Real) +
                                                        (reads_coordinates ? 2 : 1) * bytes_};
-  smallest_jacobians_.push_back(
-      {kernel_of(jacobian_program(choice.method), *jacobians_), 0, order.elements.size()});
+  smallest_jacobians_.push_back({kernel_of(jacobian, *jacobians_), 0, order.elements.size()});
   sum_ = std::make_unique<OpenClKernel>(
       *device_, node_kernel_text<Real>(node_kernel("sum_at_nodes"), dialect), "sum_at_nodes");
   sum_->set(static_cast<cl_long>(mesh.points.size()), nodal_sums_->elements, nodal_sums_->first,

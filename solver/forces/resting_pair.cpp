@@ -5,7 +5,7 @@ namespace sandglass {
 namespace {
 
 /// By how much of its height a triangle extends beyond its edges. Points keep their triangle that far, so
-/// that none changes to and fro along an edge.
+/// that none alternates between two triangles.
 constexpr double overhang = 0.1;
 
 /// At rest no step is limited by the stiffness.

@@ -22,6 +22,9 @@ void for_all(const Blocks& blocks, const Body& body) {
 /// The scale of D, see SaddleLevel::relaxation.
 constexpr float relaxation_step = 1.3f;
 
+/// The smallest square of a pivot, as a share of the diagonal: less is rounding.
+constexpr float least_pivot = 1e-6f;
+
 /// u += factor E f.
 void add_product(float factor, const Tensor<float>& E, const Row<float>& f, Row<float>& u) {
   for (int i = 0; i < 3; ++i)
@@ -35,7 +38,7 @@ Tensor<float> change_by(const Tensor<float>& K, const Row<float>& diagonal) {
   Tensor<float> change{};
   for (int column = 0; column < 3; ++column) {
     const float pivot = root(column, column);
-    if (!(pivot * pivot > 2e-6f * K(column, column))) continue;  // rounding, see cholesky
+    if (!(pivot * pivot > 2.0f * least_pivot * K(column, column))) continue;  // rounding
     Row<float> s{{root(0, column), root(1, column), root(2, column)}}, Ds{};
     for (std::size_t i = 0; i < 3; ++i) Ds[i] = diagonal[i] * s[i];
     add_product(1.0f, change, s, Ds);
@@ -56,7 +59,6 @@ float eigenvalue_bound(const Tensor<float>& D, const Tensor<float>& M) {
 }  // namespace
 
 Tensor<float> cholesky(const Tensor<float>& K) {
-  constexpr float least_pivot = 1e-6f;
   Tensor<float> L{};
   for (int j = 0; j < 3; ++j) {
     for (int i = j; i < 3; ++i) {

@@ -267,8 +267,7 @@ void require_held(const Scene& scene) {
   throw InputError(fmt::format(
       "{}: a body at rest must be held against every motion as a whole, by [[displacement]], [[rotation]], "
       "[[support]] with a stiffness, an [[obstacle]] that it touches undeformed, or [[tie]] or [[contact]] "
-      "to "
-      "a part that is held; {}nothing holds {}",
+      "to a part that is held; {}nothing holds {}",
       scene.settings.file.string(), of_parts, described(loose, scene.mesh, true)));
 }
 

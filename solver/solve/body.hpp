@@ -76,9 +76,10 @@ class Body {
     return loads_.factors_at(time, factor);
   }
 
-  /// What another processor needs in order to go on from here, and the body that it has moved on to, at a
-  /// time (s) and load factor, after a step of `step` s.
+  /// The state from which another processor continues the motion.
   ResidentBody<Real> leave() const;
+
+  /// Takes over the state that it has reached, at a time (s) and load factor, after a step of `step` s.
   void arrive(const ResidentBody<Real>& there, double step, double factor, double time);
 
   /// Updates tied nodes and their increments.

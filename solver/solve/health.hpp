@@ -28,8 +28,8 @@ void require_healthy(const Body<Real>& body, long step);
 /// Throws ComputationError if a node may have passed through a surface that it touched.
 void require_not_passed(const Touch& touch, const NodalField& points, long step);
 
-/// Throws ComputationError if surfaces that may touch are within elements of others at displacements u (m),
-/// which they were not at the start: a search for equilibrium may pass bodies through each other.
+/// Throws ComputationError if a surface that may touch lies deep inside another element at displacements u
+/// (m), but did not at the start: a search for equilibrium may pass bodies through each other.
 void require_apart(const Scene& scene, const NodalField& u);
 
 }  // namespace sandglass

@@ -86,16 +86,6 @@ ForceProgram record_jacobian() {
   });
 }
 
-}  // namespace
-
-std::string_view why_not_written(std::string_view method) {
-  std::string_view reason;
-  with_named_type(Methods{}, method, [&]<class Method>() { reason = obstacle<Method>(); });
-  return reason;
-}
-
-namespace {
-
 /// What `recorder` records of the method of this name, which must have a kernel of one element.
 template <class Recorder>
 ForceProgram of_method(std::string_view method, const Recorder& recorder) {
@@ -112,6 +102,12 @@ ForceProgram of_method(std::string_view method, const Recorder& recorder) {
 }
 
 }  // namespace
+
+std::string_view why_not_written(std::string_view method) {
+  std::string_view reason;
+  with_named_type(Methods{}, method, [&]<class Method>() { reason = obstacle<Method>(); });
+  return reason;
+}
 
 ForceProgram force_program(std::string_view method, const CalledLaw& law, bool has_fibres) {
   return of_method(method, [&]<class Method>() { return record_force<Method>(law, has_fibres); });

@@ -117,9 +117,8 @@ class Writer {
     }
     if (by_places_) {
       text += fmt::format(
-          "//   places ({} numbers): component i of the element's node I is at places[I * count + e] + i of "
-          "a "
-          "nodal array\n",
+          "//   places ({} numbers): component i of the element's node I is at places[I * count + e] + i "
+          "of a nodal array\n",
           force.arrays.front().numbers / 3);
     }
     const auto count = [&](auto... operations) {

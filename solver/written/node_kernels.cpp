@@ -12,13 +12,16 @@ namespace sandglass {
 
 namespace {
 
+/// Adds the forces of elements at node e; in both kernels, so that their bits are equal.
+constexpr std::string_view sum_of_elements = R"(      for (int k = first[e]; k < first[e + 1]; ++k) {
+        x += f[slots[k]];
+        y += f[slots[k] + elements];
+        z += f[slots[k] + 2 * elements];
+      }
+)";
+
 constexpr std::string_view sum_body = R"(    {real} x = 0, y = 0, z = 0;
-    for (int k = first[e]; k < first[e + 1]; ++k) {{
-      x += f[slots[k]];
-      y += f[slots[k] + elements];
-      z += f[slots[k] + 2 * elements];
-    }}
-    force[4 * e] = x;
+{sum}    force[4 * e] = x;
     force[4 * e + 1] = y;
     force[4 * e + 2] = z;
     force[4 * e + 3] = 0;
@@ -30,12 +33,7 @@ constexpr std::string_view move_body = R"(    {real} x = 0, y = 0, z = 0;
       y = force[4 * e + 1];
       z = force[4 * e + 2];
     }} else {{
-      for (int k = first[e]; k < first[e + 1]; ++k) {{
-        x += f[slots[k]];
-        y += f[slots[k] + elements];
-        z += f[slots[k] + 2 * elements];
-      }}
-      if (first_load[e] < first_load[e + 1]) {{
+{sum}      if (first_load[e] < first_load[e + 1]) {{
         {real} X = 0, Y = 0, Z = 0;
         for (int k = first_load[e]; k < first_load[e + 1]; ++k) {{
           const {real} c = steps[after + load_factors[k]];
@@ -173,7 +171,7 @@ std::string node_kernel_text(const NodeKernel& kernel, const Dialect& dialect) {
   return text +
          filled(dialect.kernel, fmt::arg("name", kernel.name),
                 fmt::arg("arguments", fmt::to_string(fmt::join(arguments, dialect.between)))) +
-         filled(kernel.body) + std::string(dialect.end);
+         filled(kernel.body, fmt::arg("sum", sum_of_elements)) + std::string(dialect.end);
 }
 
 template std::string node_kernel_text<double>(const NodeKernel&, const Dialect&);
