@@ -75,10 +75,10 @@ TEST(RestingPair, answers_as_one_block) {
   }
 }
 
-/// The first load level predicts a free fall of two and a half elements. In one move, points would end more
-/// than an element behind the other surface, where the search does not find them.
+/// Nothing stops the upper body until it has fallen by 1.8 elements. Then it presses as one that lay on the
+/// lower body from the start.
 TEST(RestingPair, finds_what_meets_far_from_the_start) {
-  const double gap = 0.3, fall = 0.1;
+  const double gap = 0.3, fall = 0.25;
   const TwoBodies near = blocks(6, 0.0, fall), far = blocks(6, gap, fall);
   const Rest one = rest_of(Model(near.scene(), {"tl-perturbation"}));
   const Rest two = rest_of(Model(far.scene(), {"tl-perturbation"}));
