@@ -175,8 +175,8 @@ std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& poin
   std::vector<std::pair<PointWithin, std::size_t>> found;
   for (const PointWithin& one : some) {
     for (const std::size_t e : grid.near(one.X)) {
-      const auto [low, high] = bounding_box(values_at(cells[e], points));
-      const auto beyond = [&](std::size_t i) { return one.X[i] < low[i] || one.X[i] > high[i]; };
+      const std::array<Vector, 2> box = bounding_box(values_at(cells[e], points));
+      const auto beyond = [&](std::size_t i) { return one.X[i] < box[0][i] || one.X[i] > box[1][i]; };
       if (e == one.element || beyond(0) || beyond(1) || beyond(2)) continue;
       const auto xi = parent_point(gather(points, cells[e]), one.X);
       if (xi && parent_distance(*xi) < 1.0) found.emplace_back(one, e);
