@@ -24,7 +24,7 @@ std::string or_dash(const std::optional<double>& value, double factor = 1.0) {
   return value ? fmt::format("{:.3g}", factor * *value) : "-";
 }
 
-std::string percent(double share) {
+std::string whole_percent(double share) {
   return fmt::format("{:.0f}", 100.0 * share);
 }
 
@@ -46,10 +46,10 @@ const std::vector<Column>& columns() {
       {"counted", "flop", [](R r, S) { return fmt::format("{:.0f}", r.work.operations); }},
       {"moved", "bytes", [](R r, S) { return fmt::format("{:.0f}", r.work.bytes); }},
       {"speed", "Gflop/s", [](R, S s) { return fmt::format("{:.1f}", s.gflops); }},
-      {"of peak", "%", [](R, S s) { return percent(s.peak_share); }},
+      {"of peak", "%", [](R, S s) { return whole_percent(s.peak_share); }},
       {"traffic", "GB/s", [](R, S s) { return fmt::format("{:.1f}", s.gbs); }},
-      {"of memory", "%", [](R, S s) { return percent(s.memory_share); }},
-      {"roofline", "%", [](R, S s) { return percent(s.roofline_fraction); }}};
+      {"of memory", "%", [](R, S s) { return whole_percent(s.memory_share); }},
+      {"roofline", "%", [](R, S s) { return whole_percent(s.roofline_fraction); }}};
   return all;
 }
 

@@ -15,10 +15,6 @@ std::string line(const std::string& text, std::size_t indent = 2) {
   return wrapped(text, indent) + "\n";
 }
 
-std::string percent(double fraction) {
-  return fmt::format("{:.3g} %", 100.0 * fraction);
-}
-
 std::string number_or_dash(const std::optional<double>& value, double factor = 1.0) {
   return value ? fmt::format("{:.3g}", factor * *value) : "-";
 }
@@ -34,7 +30,7 @@ std::string head_text(const Scene& scene, const Choice& choice) {
   const Demand& demand = choice.demand;
   std::string text = line(
       fmt::format("{}: at most {} of the imposed displacement from the {}{}, at every node{}{}",
-                  scene.settings.name, percent(demand.tolerance), choice.reference.name,
+                  scene.settings.name, percentage(demand.tolerance), choice.reference.name,
                   demand.against.empty() ? " element's answer on the same mesh" : "",
                   demand.real_time ? ", in real time" : "",
                   demand.budget ? fmt::format(", {:.3g} ms a step or answer", 1e3 * *demand.budget) : ""));
@@ -52,7 +48,7 @@ std::string meshes_text(const Choice& choice) {
   const auto add = [&](const std::string& number, const std::string& name, const Evaluation& evaluation) {
     text += line(fmt::format("mesh {}: {}{}{}", number, name,
                              evaluation.error ? fmt::format("; the golden's element is {} off on it",
-                                                            percent(*evaluation.error))
+                                                            percentage(*evaluation.error))
                                               : "",
                              evaluation.reason.empty() ? "" : "; rejected: " + evaluation.reason),
                  4);
@@ -123,7 +119,7 @@ std::string summary(const Rejected& group) {
       fmt::format("{} rejected: {}: {}", group.attempts.size(), group.kind, fmt::join(methods, ", "));
   if (!errors.empty()) {
     const auto [least, most] = std::minmax_element(errors.begin(), errors.end());
-    const std::string low = percent(*least), high = percent(*most);
+    const std::string low = percentage(*least), high = percentage(*most);
     text += low == high ? "; error " + low : fmt::format("; error {:.3g} to {}", 100.0 * *least, high);
   }
   return line(text, 4);
@@ -166,7 +162,7 @@ std::string choose_table(const Scene& scene, const Choice& choice) {
   return text +
          line(fmt::format("choose {}, {}: {} at most{}, {} s for a simulated second",
                           name_of(chosen.candidate), chosen.candidate.mesh->name(),
-                          percent(*chosen.evaluation.error), itself ? ", as it is the reference itself" : "",
+                          percentage(*chosen.evaluation.error), itself ? ", as it is the reference itself" : "",
                           number_or_dash(chosen.cost->per_simulated_second())));
 }
 

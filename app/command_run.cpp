@@ -165,7 +165,7 @@ void require_quasi_static(const RunOptions& options, const CaseSettings& setting
 }
 
 /// The answer of a run, static or dynamic.
-struct Answer {
+struct RunAnswer {
   NodalField u;
   std::string status;          ///< "complete", or the reason why not
   std::string stability = {};  ///< of a static answer; see stability_text
@@ -212,7 +212,7 @@ Relaxation relax_as_requested(const Model& model, const std::optional<double>& s
   return std::move(local.relaxation);
 }
 
-Answer static_answer(const Model& model, const std::optional<double>& sleep, RunObserver& observer,
+RunAnswer static_answer(const Model& model, const std::optional<double>& sleep, RunObserver& observer,
                      const Checkpoint* from, const NodalField* near) {
   Relaxation found = relax_as_requested(model, sleep, observer, from, near);
   observer.end();
@@ -226,7 +226,7 @@ Answer static_answer(const Model& model, const std::optional<double>& sleep, Run
           .adaption_seconds = found.adaption_seconds};
 }
 
-Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoint* from) {
+RunAnswer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoint* from) {
   Motion found = integrate(model, observer, from);
   observer.end();
   print_dynamic_ending(found, model, from != nullptr);
@@ -237,7 +237,7 @@ Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoin
 }
 
 /// Computes and prints an answer; `refined`, `writer` and `keeper` may be null.
-Answer compute(const RunOptions& options, const Given& given, const CaseOnMesh& problem, const Model& model,
+RunAnswer compute(const RunOptions& options, const Given& given, const CaseOnMesh& problem, const Model& model,
                const Refined* refined, ResultWriter* writer, CheckpointKeeper* keeper) {
   const Scene& scene = model.scene();
   const bool quasi_static = scene.settings.quasi_static;
@@ -245,7 +245,7 @@ Answer compute(const RunOptions& options, const Given& given, const CaseOnMesh& 
   if (from != nullptr) fmt::print("resumed from {}\n", options.checkpoint);
   RunObserver observer(model, writer, keeper);
   const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
-  Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
+  RunAnswer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
                                : dynamic_answer(model, observer, from);
   print_answer(scene, answer.u, observer.volume_ratios(), observer.found());
   print_levels(model.choice().method, observer.levels(), answer.adaption_seconds / answer.seconds);
@@ -308,7 +308,7 @@ int run_case(const RunOptions& options) {
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
   print_method(model);
   std::fflush(stdout);  // visible while it computes
-  Answer answer;
+  RunAnswer answer;
   try {
     answer = compute(options, given, refined ? refined->mesh.problem : problem, model,
                      refined ? &*refined : nullptr, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr);

@@ -200,24 +200,20 @@ void try_candidates(Choice& choice, Evaluator& evaluator, const ProgressOf& prog
   }
 }
 
-std::string percent(double fraction) {
-  return fmt::format("{:.3g} %", 100.0 * fraction);
-}
-
 /// A remark about the error of the reference.
 std::string reference_remark(const Choice& choice) {
   const auto& [name, u, unit, own] = choice.reference;
   const double tolerance = choice.demand.tolerance;
   if (name == "truth") {
     if (!own.largest) return fmt::format("the error of the truth itself is not known: {}", own.note);
-    return fmt::format("the truth itself is known to {} ({}){}", percent(*own.largest), own.note,
+    return fmt::format("the truth itself is known to {} ({}){}", percentage(*own.largest), own.note,
                        !can_show(choice.reference, tolerance) ? ": smaller errors cannot be shown" : "");
   }
   if (!own.largest) return "";
   return fmt::format(
       "the reference is the best answer on this mesh: it is itself about {} from the limit of finer meshes "
       "({})",
-      percent(*own.largest), own.note);
+      percentage(*own.largest), own.note);
 }
 
 const Attempt* nearest(const Choice& choice) {
@@ -266,6 +262,10 @@ Choice choose(const CaseOnMesh& problem, const Demand& demand, const ProgressOf&
   return choice;
 }
 
+std::string percentage(double fraction) {
+  return fmt::format("{:.3g} %", 100.0 * fraction);
+}
+
 std::vector<std::string> remarks(const Choice& choice) {
   const double tolerance = choice.demand.tolerance;
   std::vector<std::string> said;
@@ -275,7 +275,7 @@ std::vector<std::string> remarks(const Choice& choice) {
   if (best != nullptr) {
     said.push_back(fmt::format("the most accurate candidate computed is {}, {}: {}; it was rejected: {}",
                                name_of(best->candidate), best->candidate.mesh->name(),
-                               percent(*best->evaluation.error), best->evaluation.reason));
+                               percentage(*best->evaluation.error), best->evaluation.reason));
   }
   for (const auto& attempt : choice.attempts) {
     const auto& [candidate, cost, evaluation, outcome] = attempt;
@@ -286,7 +286,7 @@ std::vector<std::string> remarks(const Choice& choice) {
         "the golden's own element is {} off on this mesh: this error is due to the mesh, and no method can "
         "be more accurate. If errors fall with the square of the element size, about {:.2g} "
         "times as many elements in each direction are needed",
-        percent(*evaluation.error), std::sqrt(*evaluation.error / tolerance)));
+        percentage(*evaluation.error), std::sqrt(*evaluation.error / tolerance)));
   }
   const auto expensive =
       std::count_if(choice.attempts.begin(), choice.attempts.end(), [&](const Attempt& attempt) {

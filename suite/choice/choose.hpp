@@ -64,6 +64,9 @@ using ProgressOf = std::function<bool(double share, const std::string& remark)>;
 /// reference, ComputationError if the reference has no answer or the user interrupts.
 Choice choose(const CaseOnMesh& problem, const Demand& demand, const ProgressOf& progress);
 
+/// A fraction as a percentage with three digits.
+std::string percentage(double fraction);
+
 /// Remarks about the choice, or the reasons why nothing suffices, as sentences.
 std::vector<std::string> remarks(const Choice& choice);
 

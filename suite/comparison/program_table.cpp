@@ -13,8 +13,7 @@ namespace sandglass {
 
 namespace {
 
-constexpr std::size_t first_width = 32;
-constexpr std::size_t width = 10;
+constexpr std::size_t column_width = 10;
 
 /// Orders meshes by their elements per side; names that are not numbers come last.
 struct IsCoarser {
@@ -37,13 +36,13 @@ class Cells {
   }
 
   std::string text() const {
-    std::string text(first_width, ' ');
-    for (const auto& mesh : meshes_) text += fmt::format("{:>{}}", mesh, width);
+    std::string text(label_width, ' ');
+    for (const auto& mesh : meshes_) text += fmt::format("{:>{}}", mesh, column_width);
     for (const auto& row : rows_) {
-      text += fmt::format("\n{:<{}}", row, first_width);
+      text += fmt::format("\n{:<{}}", row, label_width);
       for (const auto& mesh : meshes_) {
         const auto found = texts_.find({row, mesh});
-        text += fmt::format("{:>{}}", found == texts_.end() ? "" : found->second, width);
+        text += fmt::format("{:>{}}", found == texts_.end() ? "" : found->second, column_width);
       }
     }
     return text + "\n";

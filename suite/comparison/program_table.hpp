@@ -7,6 +7,9 @@
 
 namespace sandglass {
 
+/// The width of the first column of tables, which names their rows.
+constexpr std::size_t label_width = 32;
+
 /// The name of a method as a row of a table, with its kappa unless that is `auto`.
 std::string row_label(const Verdict& verdict);
 

@@ -12,7 +12,6 @@ namespace sandglass {
 
 namespace {
 
-constexpr std::size_t first_width = 32;
 
 /// A column: a published value of a case.
 struct Column {
@@ -38,7 +37,7 @@ std::string header(const std::vector<Column>& columns, std::size_t width) {
   std::string text;
   const auto& axes = columns.front().verdict->variants;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    std::string line(first_width, ' '), last;
+    std::string line(label_width, ' '), last;
     for (const auto& column : columns) {
       const auto& names = column.verdict->variants;
       const std::string group = fmt::format(
@@ -72,7 +71,7 @@ std::string table(const std::vector<const Verdict*>& family, const std::string& 
     if (std::find(rows.begin(), rows.end(), name) == rows.end()) rows.push_back(name);
   }
   for (const auto& row : rows) {
-    text += fmt::format("{:<{}}", row, first_width);
+    text += fmt::format("{:<{}}", row, label_width);
     for (const auto& column : columns) {
       const auto found = std::find_if(family.begin(), family.end(), [&](const Verdict* v) {
         return v->case_name == column.verdict->case_name && row_label(*v) == row;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "comparison/verdict_json.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
 
@@ -16,14 +17,6 @@ namespace sandglass {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json to_record(const std::optional<Symptoms>& symptoms) {
-  if (!symptoms) return nullptr;
-  return {{"error", symptoms->error},
-          {"zigzag_share", symptoms->zigzag_share},
-          {"bending_ratio", symptoms->bending_ratio},
-          {"stiffness_ratio", symptoms->stiffness_ratio}};
-}
 
 Json to_record(const Cell& cell) {
   return {{"method", cell.method},
