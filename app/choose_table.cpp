@@ -159,11 +159,11 @@ std::string choose_table(const Scene& scene, const Choice& choice) {
   const Attempt& chosen = choice.attempts[*choice.chosen];
   if (!chosen.cost->remark.empty()) text += line("note: " + chosen.cost->remark);
   const bool itself = *chosen.evaluation.error == 0.0;
-  return text +
-         line(fmt::format("choose {}, {}: {} at most{}, {} s for a simulated second",
-                          name_of(chosen.candidate), chosen.candidate.mesh->name(),
-                          percentage(*chosen.evaluation.error), itself ? ", as it is the reference itself" : "",
-                          number_or_dash(chosen.cost->per_simulated_second())));
+  return text + line(fmt::format("choose {}, {}: {} at most{}, {} s for a simulated second",
+                                 name_of(chosen.candidate), chosen.candidate.mesh->name(),
+                                 percentage(*chosen.evaluation.error),
+                                 itself ? ", as it is the reference itself" : "",
+                                 number_or_dash(chosen.cost->per_simulated_second())));
 }
 
 }  // namespace sandglass

@@ -213,7 +213,7 @@ Relaxation relax_as_requested(const Model& model, const std::optional<double>& s
 }
 
 RunAnswer static_answer(const Model& model, const std::optional<double>& sleep, RunObserver& observer,
-                     const Checkpoint* from, const NodalField* near) {
+                        const Checkpoint* from, const NodalField* near) {
   Relaxation found = relax_as_requested(model, sleep, observer, from, near);
   observer.end();
   const Precision precision = model.choice().precision;
@@ -237,8 +237,9 @@ RunAnswer dynamic_answer(const Model& model, RunObserver& observer, const Checkp
 }
 
 /// Computes and prints an answer; `refined`, `writer` and `keeper` may be null.
-RunAnswer compute(const RunOptions& options, const Given& given, const CaseOnMesh& problem, const Model& model,
-               const Refined* refined, ResultWriter* writer, CheckpointKeeper* keeper) {
+RunAnswer compute(const RunOptions& options, const Given& given, const CaseOnMesh& problem,
+                  const Model& model, const Refined* refined, ResultWriter* writer,
+                  CheckpointKeeper* keeper) {
   const Scene& scene = model.scene();
   const bool quasi_static = scene.settings.quasi_static;
   const Checkpoint* from = keeper != nullptr ? keeper->from() : nullptr;
@@ -246,7 +247,7 @@ RunAnswer compute(const RunOptions& options, const Given& given, const CaseOnMes
   RunObserver observer(model, writer, keeper);
   const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
   RunAnswer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
-                               : dynamic_answer(model, observer, from);
+                                  : dynamic_answer(model, observer, from);
   print_answer(scene, answer.u, observer.volume_ratios(), observer.found());
   print_levels(model.choice().method, observer.levels(), answer.adaption_seconds / answer.seconds);
   if (quasi_static && answer.status == "complete") {

@@ -7,18 +7,18 @@ function(add_generated target template output)
   target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/kernels/${output})
 endfunction()
 
-# The kernels of the library, which compute as many elements at a time as a register holds.
-add_library(sandglass_packed OBJECT)
-compile_as_library(sandglass_packed)
-target_include_directories(sandglass_packed PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
-target_link_libraries(sandglass_packed PRIVATE fmt::fmt OpenMP::OpenMP_CXX)
+# The kernels of the library, which compute as many elements at a time as a register holds; and those that compute one element at a time,
+# for the tests and benchmarks that compare with them.
+foreach(target sandglass_packed sandglass_scalar)
+  add_library(${target} OBJECT)
+  compile_as_library(${target})
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE fmt::fmt OpenMP::OpenMP_CXX)
+endforeach()
 precompile_headers(sandglass_packed <assembly/kernels.hpp>)
+target_precompile_headers(sandglass_scalar REUSE_FROM sandglass_packed)
+target_compile_options(sandglass_scalar PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 target_sources(sandglass_library PRIVATE $<TARGET_OBJECTS:sandglass_packed>)
-
-# Kernels that compute one element at a time, for the tests and benchmarks that compare with them.
-add_library(sandglass_scalar OBJECT)
-target_link_libraries(sandglass_scalar PRIVATE sandglass)
-precompile_headers(sandglass_scalar <assembly/kernels.hpp>)
 
 # The laws that kernels call, for a number type and its header; a further argument is the type of their parameters.
 function(add_called_law target number header name)

@@ -12,7 +12,6 @@ namespace sandglass {
 
 namespace {
 
-
 /// A column: a published value of a case.
 struct Column {
   const Verdict* verdict;  // the first of its case
