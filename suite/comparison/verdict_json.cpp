@@ -4,13 +4,6 @@
 
 namespace sandglass {
 
-nlohmann::ordered_json to_record(const std::optional<Symptoms>& symptoms) {
-  if (!symptoms) return nullptr;
-  return {{"zigzag_share", symptoms->zigzag_share},
-          {"bending_ratio", symptoms->bending_ratio},
-          {"stiffness_ratio", symptoms->stiffness_ratio}};
-}
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -25,6 +18,13 @@ Json to_record(const std::optional<Accuracy>& accuracy) {
   return {{"max_relative_error", accuracy->max_relative_error},
           {"profile_relative_error", or_null(accuracy->profile_relative_error)},
           {"rms_relative_error", accuracy->rms_relative_error}};
+}
+
+Json to_record(const std::optional<Symptoms>& symptoms) {
+  if (!symptoms) return nullptr;
+  return {{"zigzag_share", symptoms->zigzag_share},
+          {"bending_ratio", symptoms->bending_ratio},
+          {"stiffness_ratio", symptoms->stiffness_ratio}};
 }
 
 /// The three kinds of cost; unknown and inapplicable figures are null.

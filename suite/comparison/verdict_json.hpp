@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -8,9 +7,6 @@
 #include "io/result_file.hpp"
 
 namespace sandglass {
-
-/// The figures of symptoms; null if there are none.
-nlohmann::ordered_json to_record(const std::optional<Symptoms>& symptoms);
 
 /// verdicts.json: provenance at the top, one record per (case, method, kappa, precision), one entry per
 /// limit. Runs of cases with published values are listed separately, in "published", with these values.

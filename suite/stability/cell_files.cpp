@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "comparison/verdict_json.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
 
@@ -18,6 +17,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json symptoms_record(const std::optional<Symptoms>& symptoms) {
+  if (!symptoms) return nullptr;
+  return {{"error", symptoms->error},
+          {"zigzag_share", symptoms->zigzag_share},
+          {"bending_ratio", symptoms->bending_ratio},
+          {"stiffness_ratio", symptoms->stiffness_ratio}};
+}
+
 Json to_record(const Cell& cell) {
   return {{"method", cell.method},
           {"x", cell.x},
@@ -25,7 +32,7 @@ Json to_record(const Cell& cell) {
           {"finding", cell.finding ? Json(name_of(*cell.finding)) : Json(nullptr)},
           {"golden_failed", cell.golden_failed},
           {"refused", cell.refused},
-          {"symptoms", to_record(cell.symptoms)},
+          {"symptoms", symptoms_record(cell.symptoms)},
           {"status", cell.status},
           {"steps", cell.steps}};
 }
