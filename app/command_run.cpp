@@ -9,6 +9,7 @@
 #include "app/machine.hpp"
 #include "app/mpi_ranks.hpp"
 #include "app/run_observer.hpp"
+#include "app/run_options.hpp"
 #include "app/run_report.hpp"
 #include "app/scene_report.hpp"
 #include "assembly/method_entry.hpp"
@@ -35,25 +36,6 @@ namespace sandglass {
 
 namespace {
 
-struct RunOptions {
-  std::string name;
-  std::optional<std::string> method = {};
-  std::optional<std::string> kappa = {};
-  std::optional<std::string> kappa_modulus = {};
-  std::optional<std::string> precision = {};
-  std::optional<std::string> accuracy = {};
-  std::optional<std::string> sleep = {};
-  int threads = 1;
-  std::string device = "cpu";
-  std::shared_ptr<const Ranks> ranks;
-  std::string output;
-  std::string checkpoint;
-  double checkpoint_every = 60.0;
-  std::string estimate;
-  std::string against;
-  bool describe = false;
-};
-
 Provenance provenance(const Model& model) {
   Provenance attributes = build_provenance();
   attributes.insert(attributes.end(), {{"method", model.choice().method},
@@ -79,89 +61,6 @@ void print_estimate_of(const std::string& against, const CaseOnMesh& problem, co
           fmt::format("from meshes of up to {} elements", estimate.elements));
     if (!estimate.remark.empty()) fmt::print("note: refined once instead of twice: {}\n", estimate.remark);
   }
-}
-
-/// The options that were given.
-struct Given {
-  std::optional<Precision> precision;
-  std::optional<std::optional<double>> kappa;
-  std::optional<KappaModulus> kappa_modulus;
-  std::optional<double> accuracy;
-  std::optional<double> sleep;
-};
-
-Given parse(const RunOptions& options) {
-  Given given;
-  if (options.precision) given.precision = parse_precision(*options.precision);
-  if (options.kappa) given.kappa = parse_kappa(*options.kappa);
-  if (options.kappa_modulus) given.kappa_modulus = parse_kappa_modulus(*options.kappa_modulus);
-  if (options.accuracy) given.accuracy = parse_share("--accuracy", *options.accuracy);
-  if (options.sleep) given.sleep = parse_share("--sleep", *options.sleep);
-  return given;
-}
-
-/// The method of the options, completed by the case's [method]. The case's kappa belongs to the case's own
-/// method, and is ignored if an option names another.
-MethodChoice choose_method(const RunOptions& options, const Given& given, const CaseSettings& settings) {
-  MethodChoice choice = method_of(settings, options.method);
-  // The mesh is refined for this method, which also computes the answer by default.
-  if (!options.against.empty() && !options.method && !settings.method) choice.method = golden_method;
-  choice.kappa = given.kappa.value_or(choice.kappa);
-  choice.kappa_modulus = given.kappa_modulus.value_or(choice.kappa_modulus);
-  choice.precision = given.precision.value_or(choice.precision);
-  choice.accuracy = given.accuracy.value_or(choice.accuracy);
-  if (given.accuracy && options.against.empty() && !method_named(choice.method).adapts()) {
-    throw InputError(
-        fmt::format("--accuracy: '{}' does not adapt; allowed: an adaptive method, such as tl-adaptive, "
-                    "or --against truth, which refines the mesh",
-                    choice.method));
-  }
-  choice.threads = options.threads;
-  choice.ranks = options.ranks;
-  choice.processor = processor_named(options.device);
-  return choice;
-}
-
-/// Throws InputError for options that exclude each other.
-void require_sensible(const RunOptions& options) {
-  require_threads(options.threads);
-  if (!(options.checkpoint_every >= 0.0)) {
-    throw InputError(
-        fmt::format("--checkpoint-every = {} must be in [0, inf) seconds", options.checkpoint_every));
-  }
-  if (!options.output.empty() && options.output == options.checkpoint) {
-    throw InputError(
-        fmt::format("--checkpoint = '{}' must be another file than --output", options.checkpoint));
-  }
-  if (!options.against.empty()) {
-    if (!options.accuracy)
-      throw InputError("--against: needs the largest error allowed, such as --accuracy 2%");
-    if (options.sleep)
-      throw InputError("--against: a refined mesh is computed as a whole; leave out --sleep");
-    if (!options.checkpoint.empty())
-      throw InputError("--against: a run that refines its mesh keeps no checkpoints; leave out --checkpoint");
-  }
-  if (options.ranks->count() > 1 &&
-      (options.sleep || !options.against.empty() || options.estimate == "truth")) {
-    throw InputError(
-        "--sleep, --against and --estimate truth compute parts or other meshes, which are not divided among "
-        "ranks; allowed: one rank with more --threads");
-  }
-  if (options.sleep && !options.checkpoint.empty()) {
-    throw InputError("--sleep: such a run keeps no checkpoints; leave out --checkpoint");
-  }
-}
-
-/// Throws InputError for options that are for quasi-static cases only.
-void require_quasi_static(const RunOptions& options, const CaseSettings& settings) {
-  if (settings.quasi_static) return;
-  const auto refuse = [&](const char* option, const char* what) {
-    throw InputError(
-        fmt::format("{}: '{}' is a dynamic case; {} quasi-static cases", option, settings.name, what));
-  };
-  if (!options.estimate.empty()) refuse("--estimate", "errors are estimated for");
-  if (!options.against.empty()) refuse("--against", "meshes are refined for");
-  if (options.sleep) refuse("--sleep", "elements sleep in");
 }
 
 /// The answer of a run, static or dynamic.
@@ -261,20 +160,6 @@ RunAnswer compute(const RunOptions& options, const Given& given, const CaseOnMes
   if (options.ranks->count() > 1) print_traffic(*options.ranks);
   if (options.ranks->rank() == 0) warn_of_suspect(model, observer.found());
   return answer;
-}
-
-/// Throws InputError unless the output files can be written; a run never overwrites its own input.
-void require_places(const RunOptions& options, const CaseSettings& settings) {
-  const auto& inputs = settings.files;
-  if (!options.checkpoint.empty()) require_place(options.checkpoint, inputs);
-  if (options.output.empty()) return;
-  const std::filesystem::path output(options.output);
-  if (output.extension() != ".h5") {
-    throw InputError(fmt::format(
-        "--output = '{}' must end in .h5; an .xdmf of the same name is written beside it", options.output));
-  }
-  require_place(output, inputs);
-  require_place(guide_of(output), inputs);
 }
 
 int run_case(const RunOptions& options) {

@@ -10,6 +10,7 @@ Findings are not remembered.
 
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -65,10 +66,23 @@ def words_of(entry):
     return words
 
 
+def commands_in(database):
+    """The entry of every source in a database of compile commands; CMake lists only the file that
+    includes those that are compiled together."""
+    compiled = {}
+    for entry in json.loads(database.read_text()):
+        file = entry["file"]
+        together = (
+            re.findall('#include "(.*)"', Path(file).read_text()) if "/Unity/" in file else [file]
+        )
+        for source in together:
+            compiled[source] = entry | {"command": entry["command"].replace(file, source)}
+    return compiled
+
+
 def main(build, *sources):
     """Checks the sources on all cores: 1 where one has a finding or is not compiled, else 0."""
-    entries = json.loads((Path(build) / "compile_commands.json").read_text())
-    compiled = {entry["file"]: entry for entry in entries}
+    compiled = commands_in(Path(build) / "compile_commands.json")
     unknown = [source for source in sources if str(Path(source).resolve()) not in compiled]
     if unknown:
         print(f"ci/tidy.py: {build} compiles none of: {' '.join(unknown)}", file=sys.stderr)
