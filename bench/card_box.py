@@ -74,11 +74,11 @@ class Box:
         self.elements, self.nodes, self.constraints = n**3, (n + 1) ** 3, 3 * (n + 1) ** 2
         self.functions, self.numbers = functions, len(one)
         self._arrays = {}
-        sizes = self._sizes(len(one))
-        needed = sum(sizes.values())
+        self._sizes = self._bytes_of_arrays(len(one))
+        needed = sum(self._sizes.values())
         if needed > card.free_bytes():
             raise InputError(f"{needed / 1e9:.3g} GB are more than the card has free")
-        for name, size in sizes.items():
+        for name, size in self._sizes.items():
             self._arrays[name] = card.zeros(size)
         self._write("one", one)
         self._write("v", self._numbers(VELOCITY))
@@ -105,7 +105,7 @@ class Box:
     def _write(self, name, numbers):
         self.card.write(self._arrays[name], numbers.tobytes())
 
-    def _sizes(self, numbers):
+    def _bytes_of_arrays(self, numbers):
         """The bytes of the arrays, by name."""
         real = ctypes.sizeof(REALS[self.precision][1])
         row, nodes, slots = 4 * real, self.nodes, 8 * self.elements
@@ -169,17 +169,19 @@ class Box:
         self.evaluate()
         self.move(13, -1)
 
-    def values(self, name, count):
-        """The first numbers of an array."""
-        real = REALS[self.precision]
-        data = self.card.read(self._arrays[name], count * ctypes.sizeof(real[1]))
-        numbers = array.array(real[0])
-        numbers.frombytes(data)
+    def bytes_of(self, name):
+        """The bytes of an array."""
+        return self.card.read(self._arrays[name], self._sizes[name])
+
+    def values(self, name):
+        """The numbers of an array."""
+        numbers = array.array(REALS[self.precision][0])
+        numbers.frombytes(self.bytes_of(name))
         return numbers
 
     def displacements(self):
         """Of all nodes (m), components of a node after each other."""
-        rows = self.values("u", 4 * self.nodes)
+        rows = self.values("u")
         return [rows[4 * node + i] for node in range(self.nodes) for i in range(3)]
 
     def release(self):

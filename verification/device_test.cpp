@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/method_entry.hpp"
+#include "assembly/processor.hpp"
 #include "benchmark/force_check.hpp"
 #include "device/opencl.hpp"
 #include "device/opencl_processor.hpp"

@@ -23,11 +23,11 @@ void require_supported(const Scene& scene, const Processor* processor) {
     const std::string file = scene.settings.file.string();
     if (condition) throw InputError(fmt::format("{}: {}, or simulate one body at a time", file, rule));
   };
+  refuse_if(processor != nullptr, "a batch runs on this processor alone; choose device = 'cpu'");
   const bool remembers = std::ranges::any_of(scene.materials.list, is_viscoelastic, &Material::law);
   refuse_if(remembers || !scene.materials.axes.empty(), "a batch takes isotropic elastic laws; choose one");
   if (const BodyForce* other = first_not_dead(scene.forces))
     refuse_if(true, fmt::format("a batch takes dead loads only; remove [[{}]]", other->traits().name));
-  refuse_if(processor != nullptr, "a batch runs on this processor alone; choose device = 'cpu'");
   refuse_if(!scene.ties.empty(), "a batch takes no ties; choose a mesh without them");
   refuse_if(scene.settings.dynamics.subcycles > 1 || scene.settings.dynamics.body_frequency > 0,
             "a batch takes the step of its stiffest element; set subcycles = 1 and body_frequency = 0");

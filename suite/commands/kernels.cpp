@@ -111,9 +111,8 @@ std::string kernel_source(const KernelRequest& request, const Case& description,
   std::replace(title.name.begin(), title.name.end(), '-', '_');
   const auto written = [&]<class Real>(Real) {
     if (!request.step) return kernel_text<Real>(force, dialect, title);
-    std::string text = kernel_text<Real>(force, dialect, title, NodalValues::of_nodes);
-    for (const NodeKernel& kernel : node_kernels()) text += "\n" + node_kernel_text<Real>(kernel, dialect);
-    return text;
+    return kernel_text<Real>(force, dialect, title, NodalValues::of_nodes) + "\n" +
+           node_kernels_text<Real>(dialect);
   };
   return single ? written(0.0F) : written(0.0);
 }
