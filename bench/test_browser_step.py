@@ -41,9 +41,9 @@ async (text, buffers, dispatches) => {
   const prepared = dispatches.map(([entry, bindings, groups]) => {
     pipelines[entry] ??= device.createComputePipeline(
       {layout: "auto", compute: {module, entryPoint: entry}});
-    const entries = bindings.map((each, binding) => {
-      const [name, size] = Array.isArray(each) ? each : [each, undefined];
-      return {binding, resource: {buffer: on_device[name], size}};
+    const entries = bindings.map((each, n) => {
+      const [name, size, binding] = Array.isArray(each) ? each : [each, undefined];
+      return {binding: binding ?? n, resource: {buffer: on_device[name], size}};
     });
     const layout = pipelines[entry].getBindGroupLayout(0);
     return [pipelines[entry], device.createBindGroup({layout, entries}), groups];
@@ -82,10 +82,25 @@ def coded(usage, values):
     return usage, base64.b64encode(values.tobytes()).decode()
 
 
-def test_a_motion_in_a_browser_is_that_of_the_program(card_folder, tmp_path):
-    text = output_of(
-        binary(), "kernels", card.METHOD, card_folder / "card.toml", "--dialect", "wgsl", "--step"
-    )
+def computed(folder, text, buffers, dispatches):
+    """The numbers of the buffer `results` afterwards."""
+    page = folder / "page.html"
+    page.write_text("<html></html>")
+    with Browser(webgpu=True) as browser:
+        browser.open(page)
+        given = ", ".join(map(json.dumps, (text, buffers, dispatches)))
+        answer = browser.run(f"({SCRIPT})({given})")
+    return np.frombuffer(base64.b64decode(answer), np.float32)
+
+
+@pytest.fixture(scope="module")
+def text(card_folder):
+    """The kernels."""
+    case = card_folder / "card.toml"
+    return output_of(binary(), "kernels", card.METHOD, case, "--dialect", "wgsl", "--step")
+
+
+def test_a_motion_in_a_browser_is_that_of_the_program(card_folder, text, tmp_path):
     host = HostCard(tmp_path)
     functions = host.functions(card.text_of(card_folder, "float"), card.KERNELS)
     one = card.constants_in(card_folder, "float")
@@ -123,14 +138,19 @@ def test_a_motion_in_a_browser_is_that_of_the_program(card_folder, tmp_path):
         return "move_nodes", [f"{after}, {to}", *shared], -(-box.nodes // 64)
 
     dispatches = [move(-1, 0), *[force, move(13, 13)] * (card.STEPS - 1), force, move(13, -1)]
-    page = tmp_path / "page.html"
-    page.write_text("<html></html>")
-    with Browser(webgpu=True) as browser:
-        browser.open(page)
-        given = ", ".join(map(json.dumps, (text, buffers, dispatches)))
-        answer = browser.run(f"({SCRIPT})({given})")
-    results = np.frombuffer(base64.b64decode(answer), np.float32)
+    results = computed(tmp_path, text, buffers, dispatches)
     u = results[: 4 * box.nodes].reshape(-1, 4)[:, :3].ravel()
     reactions = results[begins["reaction"] :]
     reactions = reactions[: box.constraints]
     assert card.difference(card_folder, "float", u.tolist(), reactions.tolist()) <= 1.0
+
+
+@pytest.mark.parametrize("worst, ill", [(0.5, 0), (0.0, 1), (-1.0, 1), (np.inf, 1), (np.nan, 1)])
+def test_ill_elements_are_found_in_a_browser(text, tmp_path, worst, ill):
+    buffers = {
+        "results": coded("STORAGE", np.zeros(1, np.float32)),
+        "numbers": coded("STORAGE", np.array([9.0, 1.0, worst, 1.0], np.float32)),
+        "input": coded("UNIFORM", np.array([3, 1, 0], np.int32)),  # count, and where arrays begin
+    }
+    bindings = ["input", ["numbers", 16, 2], ["results", 4, 3]]  # it has no integers
+    assert computed(tmp_path, text, buffers, [("find_ill", bindings, 1)]) == [ill]
