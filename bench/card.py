@@ -126,8 +126,10 @@ def timed(card, functions, precision, n, one, repetitions=REPETITIONS):
 
 
 def triad_gbs(card, functions, precision, count=2**27):
-    """The bandwidth of a = b + s c over arrays of so many numbers, 1e9 bytes per second."""
-    size = count * ctypes.sizeof(REALS[precision][1])
+    """The bandwidth of a = b + s c over arrays of so many numbers or as many as fit, GB/s."""
+    real = ctypes.sizeof(REALS[precision][1])
+    count = min(count, card.free_bytes() // (4 * real))
+    size = count * real
     arrays = [card.zeros(size) for _ in range(3)]
 
     def queue():
