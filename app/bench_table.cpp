@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "assembly/processor.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -182,6 +184,7 @@ std::string machine_lines(const BenchPlan& plan, MachineSpeed& machine) {
         machine.peak_gflops(Precision::single_precision, threads), machine.memory_gbs(threads),
         threads > available_processors() ? "; more threads than processors" : "");
   }
+  if (plan.processor != nullptr) lines += fmt::format("device: {}\n", plan.processor->name());
   return lines;
 }
 

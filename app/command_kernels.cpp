@@ -18,17 +18,21 @@ struct KernelOptions {
   KernelRequest request;
   std::string case_name;
   std::string output;
+  std::string constants;
 };
 
 void write_kernels(const KernelOptions& options) {
   const Case description = find_case(options.case_name);
-  if (!options.output.empty()) require_place(options.output, description.files);
+  for (const std::string& file : {options.output, options.constants})
+    if (!file.empty()) require_place(file, description.files);
   const std::string text = kernel_source(options.request, description, build_provenance());
   if (options.output.empty()) {
     fmt::print("{}", text);
   } else {
     write_text_file(options.output, text);
   }
+  if (!options.constants.empty())
+    write_text_file(options.constants, kernel_constants(options.request, description));
 }
 
 }  // namespace
@@ -57,6 +61,8 @@ void add_kernels_command(CLI::App& app) {
   command->add_flag(
       "--step", options->request.step,
       "add the kernels that take steps where the state is; the force then reads nodes by places");
+  command->add_option("--constants", options->constants,
+                      "also write the array `constants` for the elements of the case's mesh to this file");
   command->add_option("-o,--output", options->output, "write to this file instead of printing");
   command->callback([options] { write_kernels(*options); });
 }

@@ -173,8 +173,15 @@ std::string write_kernel(const Arguments& given, Watch& watch) {
   const KernelRequest request{given.text("method"), given.text("dialect"),
                               given.optional("precision", &Arguments::text).value_or(""),
                               given.optional("material", &Arguments::integer), given.flag("step")};
-  const std::string of = given.text("case");
-  return watch.run([&] { return Json(kernel_source(request, find_case(of), build_provenance())).dump(); });
+  const std::string of = given.text("case"), constants = given.text("constants");
+  return watch.run([&] {
+    const Case description = find_case(of);
+    if (!constants.empty()) {
+      require_place(constants, description.files);
+      write_text_file(constants, kernel_constants(request, description));
+    }
+    return Json(kernel_source(request, description, build_provenance())).dump();
+  });
 }
 
 std::string write_mesh(const Arguments& given, Watch& watch) {

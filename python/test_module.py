@@ -308,3 +308,25 @@ def test_example_runs(case):
     lines = done.stdout.splitlines()
     assert len(lines) == 6
     assert lines[-1].startswith("1.00 s: largest displacement 0.02")
+
+
+def test_a_device_takes_its_steps(case):
+    """They are those of this processor; device_simulation_test.cpp derives a limit."""
+    here = sandglass.Simulation(case)
+    try:
+        there = sandglass.Simulation(case, device="opencl")
+    except sandglass.InputError as error:
+        pytest.skip(str(error))
+    view = there.displacements
+    for body in here, there:
+        body.impose(0.5)
+        body.advance(0.1)
+    assert np.abs(view).max() > 0.005
+    assert np.abs(view - here.displacements).max() < 1e-11 * np.abs(view).max()
+    copied = there.copy()
+    for body in there, copied:
+        body.settle()
+        body.advance(0.05)
+    assert np.array_equal(view, copied.displacements)
+    with pytest.raises(sandglass.InputError, match="device = 'cuda' is no processor of this mach"):
+        sandglass.Simulation(case, device="cuda")

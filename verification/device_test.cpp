@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/method_entry.hpp"
+#include "assembly/processor.hpp"
 #include "benchmark/force_check.hpp"
 #include "device/opencl.hpp"
 #include "device/opencl_processor.hpp"
@@ -10,6 +11,7 @@
 #include "solve/central_difference.hpp"
 #include "solve/resident.hpp"
 #include "solve/stable_step.hpp"
+#include "support/motion_rounding.hpp"
 #include "support/obstacles.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/random_scene.hpp"
@@ -88,18 +90,6 @@ TEST_F(Device, forces_of_every_method_and_law_are_those_of_this_processor) {
     }
   });
   EXPECT_GE(compared, (13 + 2 * 7) * 2);
-}
-
-/// The difference of two motions of a body, over its largest displacement: every step rounds displacements,
-/// at random, so that the error is that of one step times the root of their number. A rounding of the volume
-/// change is one of the pressure, K / mu times as large beside the shear stress; four is for the roundings of
-/// a step (float_budget_test.cpp), two for the two motions that are compared.
-double rounding_of_motions(const Scene& scene, Precision precision, double steps) {
-  const double roundoff = 0.5 * (precision == Precision::double_precision
-                                     ? std::numeric_limits<double>::epsilon()
-                                     : static_cast<double>(std::numeric_limits<float>::epsilon()));
-  const double ratio = lame_lambdas(scene.materials).front() / shear_moduli(scene.materials).front() + 1.0;
-  return 2.0 * 4.0 * roundoff * ratio * std::sqrt(steps);
 }
 
 TEST_F(Device, motions_of_cases_are_those_of_this_processor) {

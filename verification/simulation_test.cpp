@@ -9,6 +9,7 @@
 #include "solve/relaxation.hpp"
 #include "solve/steady_step.hpp"
 #include "support/allocations.hpp"
+#include "support/field_of.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -43,18 +44,6 @@ Motion motion_of(const std::string& text, const MethodChoice& choice) {
   const Model model(scene, choice);
   Observer nobody;
   return integrate(model, nobody);
-}
-
-/// Displacements by nodes, from the view.
-template <class Real>
-NodalField field_of(const Simulation<Real>& simulation) {
-  const NodalView<Real> u = simulation.displacements();
-  NodalField field;
-  for (const int row : simulation.row_of_node()) {
-    const Real* components = u[index(row)];
-    field.push_back({components[0], components[1], components[2]});
-  }
-  return field;
 }
 
 double smooth(double t) {

@@ -1,6 +1,7 @@
 """`--device opencl` of run, verify and bench; device_test.cpp compares its forces and motions."""
 
 import json
+import re
 
 import pytest
 from command_line import sandglass
@@ -32,11 +33,23 @@ def test_a_static_answer_is_found_with_the_forces_of_a_device():
 
 def test_bench_times_the_device_beside_this_processor(tmp_path):
     options = "-m tl-perturbation -m tl-adaptive -t 1 -r 1 -p float --device opencl --json".split()
-    sandglass("bench", "column", *options, tmp_path / "bench.json", code=0)
-    rows = json.loads((tmp_path / "bench.json").read_text())["records"]
-    found = {(row["method"], row["kernel"]): row["status"] for row in rows}
-    assert found["tl-perturbation", "pack"] == found["tl-perturbation", "device"] == "ok"
-    assert found["tl-adaptive", "device"].startswith("left out: method 'tl-adaptive'")
+    sandglass("bench", "pushed-ellipsoid", *options, tmp_path / "bench.json", code=0)
+    document = json.loads((tmp_path / "bench.json").read_text())
+    assert document["device"] and f"({document['device']})" in NONE
+    found = {(row["method"], row["kernel"]): row for row in document["records"]}
+    here, there = (found["tl-perturbation", kernel] for kernel in ("pack", "device"))
+    assert here["status"] == there["status"] == "ok"
+    assert found["tl-adaptive", "device"]["status"].startswith("left out: method 'tl-adaptive'")
+    as_run = "-m tl-perturbation -p float --device opencl".split()
+    printed = sandglass("run", "pushed-ellipsoid", *as_run, code=0).stdout
+    bytes_of_step = re.search(r"and (\S+) bytes per element in a step", printed)[1]
+    assert f"{there['bytes_per_element_step']:.4g}" == bytes_of_step  # those of the state there
+
+
+def test_bench_leaves_out_scenes_whose_state_cannot_stay_there():
+    options = "-m tl-perturbation -t 1 -r 1 -p float --device opencl".split()
+    printed = sandglass("bench", "tool-press", *options, code=0).stdout
+    assert "left out: the state cannot stay on the device: [[obstacle]] acts on it" in printed
 
 
 @pytest.mark.parametrize(

@@ -117,7 +117,6 @@ def test_every_method_is_written_or_refused_with_a_reason():
     [
         ("tl-perturbation column --dialect hlsl", "--dialect: hlsl not in {c,opencl,cuda,wgsl}"),
         ("tl-perturbation column --dialect wgsl -p double", "WGSL has no double precision"),
-        ("tl-perturbation column --dialect wgsl --step", "no kernels of nodes; allowed: c, opencl"),
         ("tl-perturbation column --material 2", "--material = 2 must be in [1, 1]"),
         ("tl-perturbation cardiac-beam-1 --dialect wgsl", "lose digits in WGSL"),
         ("tl-perturbation stiff-core", "materials; choose one with --material, from 1 to 2"),
@@ -131,3 +130,20 @@ def test_file(tmp_path):
     file = tmp_path / "kernel.c"
     sandglass("kernels", "tl-full", "column", "-o", file, code=0)
     assert file.read_text() == sandglass("kernels", "tl-full", "column", code=0).stdout
+
+
+def test_constants(tmp_path):
+    """Those of elements of a material, in both precisions; test_card.py moves a body by them."""
+    counts = []
+    for material in "1", "2":
+        found = {}
+        for precision, (kind, _) in REAL.items():
+            file = tmp_path / f"{precision}.{material}"
+            options = "--precision", precision, "--material", material, "--constants", file
+            text = sandglass("kernels", "tl-perturbation", "stiff-core", *options, code=0).stdout
+            numbers = int(re.search(r"constants \((\d+) numbers\)", text)[1])
+            found[precision] = np.fromfile(file, kind).reshape(numbers, -1)
+        assert (found["double"].astype(np.float32) == found["float"]).all()
+        counts.append(found["double"].shape[1])
+    described = sandglass("mesh", "stiff-core", "-o", tmp_path / "mesh.vtu", code=0).stdout
+    assert sum(counts) == int(re.search(r"(\d+) elements", described)[1])

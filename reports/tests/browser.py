@@ -8,17 +8,22 @@ import tempfile
 import time
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"]
+WEBGPU += ["--use-vulkan=swiftshader"]
 PATIENCE = 60.0  # seconds for one answer: much longer than needed on a busy machine
 
 
 class Browser:
-    """One page of one browser, used as a context; `complaints` is the output of its console."""
+    """One page of one browser, used as a context; `complaints` is the output of its console.
 
-    def __init__(self, width=1280, height=900, dark=False, phone=False, script=True):
+    With `webgpu`, the page can compute on a graphics card that this processor imitates.
+    """
+
+    def __init__(self, width=1280, height=900, dark=False, phone=False, script=True, webgpu=False):
         self.complaints, self.requests = [], []
         self._waiting, self._number = b"", 0
         self._folder = tempfile.mkdtemp(prefix="browser.")
-        self._start()
+        self._start(WEBGPU if webgpu else ["--disable-gpu"])
         target = self._call("Target.createTarget", url="about:blank")["targetId"]
         session = self._call("Target.attachToTarget", targetId=target, flatten=True)
         self._session = session["sessionId"]
@@ -79,11 +84,11 @@ class Browser:
         shutil.rmtree(self._folder, ignore_errors=True)
         return not os.path.exists(self._folder)
 
-    def _start(self):
+    def _start(self, more):
         """The browser reads from descriptor 3 and writes to 4."""
         read_theirs, self._out = os.pipe()
         self._in, write_theirs = os.pipe()
-        flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe"]
+        flags = ["--headless=new", "--no-sandbox", "--remote-debugging-pipe", *more]
         flags += ["--disable-dev-shm-usage", f"--user-data-dir={self._folder}"]
         words = " ".join(f"'{word}'" for word in (CHROMIUM, *flags, "about:blank"))
         self._process = subprocess.Popen(

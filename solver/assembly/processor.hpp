@@ -12,6 +12,9 @@ class Processor {
   Processor& operator=(const Processor&) = delete;
   virtual ~Processor() = default;
 
+  /// Its name, as the system gives it.
+  virtual std::string name() const = 0;
+
   /// Why it does not compute the forces of a method's elements with these materials; empty if it does.
   virtual std::string refusal(const Materials& materials, const MethodChoice& choice) const = 0;
 

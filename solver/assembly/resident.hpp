@@ -13,11 +13,13 @@ namespace sandglass {
 /// What acts on the nodes of a body that moves by central differences, by rows of its layout.
 template <class Real>
 struct NodalProblem {
+  using Share = std::array<double, 3>;
+
   /// A component that follows a path: the sum of `share` (m) times the terms of its angle.
   struct Constraint {
     std::size_t row;
     std::size_t component;
-    std::array<double, 3> share;
+    Share share;
     std::size_t angle;
     double mass;  ///< kg
   };
@@ -71,11 +73,17 @@ class ResidentState {
 
   virtual StepTraffic step_traffic() const = 0;
 
+  /// Gives constraints, in the order of the problem, other shares of their paths in the steps from now on.
+  virtual void redirect(std::span<const typename NodalProblem<Real>::Share> shares) = 0;
+
   /// Starts from a body; its reactions and works are not used.
   virtual void write(const ResidentBody<Real>& body) = 0;
 
   /// Takes steps, without waiting for their end.
   virtual void take(std::span<const ResidentStep> steps) = 0;
+
+  /// Waits for the end of all steps.
+  virtual void wait() = 0;
 
   /// Whether det F is positive and finite at all integration points.
   virtual bool is_healthy() = 0;

@@ -10,6 +10,7 @@
 #include "device/opencl_state.hpp"
 #include "mesh/node_elements.hpp"
 #include "written/kernel_text.hpp"
+#include "written/mesh_constants.hpp"
 #include "written/node_kernels.hpp"
 
 namespace sandglass {
@@ -82,14 +83,8 @@ OpenClForce<Real>::OpenClForce(std::shared_ptr<const OpenClDevice> device,
     for (const int node : mesh.cells[e]) own_places.push_back(place_of_row(row(node)));
     return own_places;
   });
-  const auto constants = by_number<Real>(order, [&](std::size_t e) {
-    const Material& material = materials.list[materials.of(e)];
-    const HourglassSettings settings{
-        .kappa = choice.kappa, .density = material.density, .kappa_modulus = choice.kappa_modulus};
-    return element_constants(choice.method, gather(mesh.points, mesh.cells[e]),
-                             elastic_law(kernel_law(material)),
-                             materials.axes.empty() ? nullptr : &materials.axes[e], settings);
-  });
+  const auto constants =
+      by_number<Real>(order, [&](std::size_t e) { return constants_of(mesh, materials, choice, e); });
   std::vector<Real> axes;
   if (!materials.axes.empty())
     axes = by_number<Real>(order, [&](std::size_t e) { return materials.axes[e].entries; });
@@ -181,7 +176,7 @@ void OpenClForce<Real>::compute_jacobians(const OpenClBuffer& u) const {
 
 template <class Real>
 void OpenClForce<Real>::evaluate(State<Real>& state, Rows<Real>& force) const {
-  const std::scoped_lock lock(one_evaluation_);
+  const auto lock = alone();
   u_.write(state.u.data(), bytes_);
   compute_forces(u_);
   sum_->run(0, sums_);

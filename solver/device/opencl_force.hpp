@@ -43,6 +43,10 @@ class OpenClForce final : public DelegatingForce<Real>, public StateKeeper<Real>
   /// What the forces of elements cost.
   const StepTraffic& traffic() const { return traffic_; }
 
+  /// Kernels keep their arguments, and forces of elements are in one array: as long as the returned object
+  /// lives, no other thread uses them.
+  std::scoped_lock<std::mutex> alone() const { return std::scoped_lock(one_evaluation_); }
+
   /// Queues the computation of the forces of elements, or of their smallest det F, at displacements u.
   void compute_forces(const OpenClBuffer& u) const;
   void compute_jacobians(const OpenClBuffer& u) const;
@@ -60,8 +64,8 @@ class OpenClForce final : public DelegatingForce<Real>, public StateKeeper<Real>
   void compute(std::vector<Part>& parts, const OpenClBuffer& u) const;
 
   std::shared_ptr<const OpenClDevice> device_;
-  std::size_t bytes_;                   // of nodal values
-  mutable std::mutex one_evaluation_;   // kernels keep their arguments
+  std::size_t bytes_;  // of nodal values
+  mutable std::mutex one_evaluation_;
   mutable OpenClBuffer u_, force_;      // of evaluations
   std::vector<OpenClBuffer> constant_;  // buffers that kernels read
   std::unique_ptr<NodalSums> nodal_sums_;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <numeric>
 
+#include "assembly/processor.hpp"
 #include "base/error.hpp"
 #include "device/opencl_force.hpp"
 #include "written/force_program.hpp"
@@ -20,6 +21,8 @@ class OpenClProcessor final : public Processor {
  public:
   explicit OpenClProcessor(const OpenClDeviceName& chosen)
       : chosen_(chosen), device_(std::make_shared<const OpenClDevice>(chosen)) {}
+
+  std::string name() const override { return chosen_.name; }
 
   std::string refusal(const Materials& materials, const MethodChoice& choice) const override {
     if (const auto reason = why_not_written(choice.method); !reason.empty()) {

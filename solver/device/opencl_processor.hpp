@@ -1,8 +1,12 @@
 #pragma once
 
-#include "assembly/processor.hpp"
+#include <memory>
+#include <string>
+#include <string_view>
 
 namespace sandglass {
+
+class Processor;
 
 /// The processor that a user names: "opencl" for the first device of OpenCL, graphics cards first, or
 /// "opencl:2" for the second. Null for "cpu". Throws InputError, which lists the devices of this machine, for

@@ -102,6 +102,7 @@ OpenClState<Real>::OpenClState(const OpenClForce<Real>& elements, const NodalPro
       numbers_of_step_(2 + problem.curves + 2 + of_angle * problem.angles),
       move_(kernel_named<Real>(device_, "move_nodes")),
       find_ill_(kernel_named<Real>(device_, "find_ill")),
+      on_shares_(device_, of_row * by_row_.size() * sizeof(Real)),
       u_(device_, of_row * nodes_ * sizeof(Real)),
       increment_(device_, of_row * nodes_ * sizeof(Real)),
       force_(device_, of_row * nodes_ * sizeof(Real)),
@@ -122,14 +123,14 @@ OpenClState<Real>::OpenClState(const OpenClForce<Real>& elements, const NodalPro
   const auto first_constraint =
       sort_by_row(by_row_, nodes_, [&](std::size_t k) { return problem.constraints[k].row; });
   std::vector<int> components, angles;
-  std::vector<Real> shares;
   for (const std::size_t k : by_row_) {
     const auto& constraint = problem.constraints[k];
     components.push_back(static_cast<int>(constraint.component));
     angles.push_back(static_cast<int>(2 + problem.curves + 2 + of_angle * constraint.angle));
-    for (const double share : constraint.share) shares.push_back(static_cast<Real>(share));
-    shares.push_back(static_cast<Real>(constraint.mass));
+    for (const double share : constraint.share) shares_.push_back(static_cast<Real>(share));
+    shares_.push_back(static_cast<Real>(constraint.mass));
   }
+  on_shares_.write(shares_.data(), shares_.size() * sizeof(Real));
   const auto on_device = [&](const auto& values) -> const OpenClBuffer& { return keep({device_, values}); };
   const OpenClBuffer &places = on_device(all.places), &g = on_device(all.g);
   std::size_t column = 0;
@@ -156,7 +157,7 @@ OpenClState<Real>::OpenClState(const OpenClForce<Real>& elements, const NodalPro
   move_.set(static_cast<cl_long>(nodes_), 0, 0, keep({device_, sizeof(Real)}), sums.elements, sums.first,
             sums.slots, sums.f, static_cast<int>(all.columns), on_device(first_load), on_device(slots),
             on_device(factors), g, on_device(first_constraint), on_device(components), on_device(angles),
-            on_device(shares), on_device(problem.inverse_masses), u_, increment_, force_, load_, load_work_,
+            on_shares_, on_device(problem.inverse_masses), u_, increment_, force_, load_, load_work_,
             reaction_, driving_, work_);
   traffic_ = traffic_of(first_load, problem.face_forces);
   find_ill_.set(static_cast<cl_long>(sums.elements), elements.jacobians(), ill_);
@@ -181,6 +182,14 @@ StepTraffic OpenClState<Real>::traffic_of(const std::vector<int>& first_load,
     sum.bytes += in_groups(own.faces.size()) *
                  (4 * index + own.constants.front().size() * number + 4 * row + 4 * of_corner * number);
   return sum;
+}
+
+template <class Real>
+void OpenClState<Real>::redirect(std::span<const typename NodalProblem<Real>::Share> shares) {
+  for (std::size_t n = 0; n < by_row_.size(); ++n) {
+    for (std::size_t i = 0; i < 3; ++i) shares_[of_row * n + i] = static_cast<Real>(shares[by_row_[n]][i]);
+  }
+  on_shares_.write(shares_.data(), shares_.size() * sizeof(Real));
 }
 
 template <class Real>
@@ -220,6 +229,7 @@ void OpenClState<Real>::take(std::span<const ResidentStep> steps) {
     }
   }
   const OpenClBuffer sent(device_, numbers);
+  const auto alone = elements_.alone();
   move_.set_argument(3, sent);
   const int none = -1, of_step = static_cast<int>(numbers_of_step_), count = static_cast<int>(steps.size());
   for (int n = 0; n <= count; ++n) {
@@ -233,9 +243,16 @@ void OpenClState<Real>::take(std::span<const ResidentStep> steps) {
 }
 
 template <class Real>
+void OpenClState<Real>::wait() {
+  Real last;
+  ill_.read(&last, sizeof last);
+}
+
+template <class Real>
 bool OpenClState<Real>::is_healthy() {
   Real ill = 0;
   ill_.write(&ill, sizeof ill);
+  const auto alone = elements_.alone();
   elements_.compute_jacobians(u_);
   find_ill_.run(0, static_cast<std::size_t>(elements_.nodal_sums().elements));
   ill_.read(&ill, sizeof ill);

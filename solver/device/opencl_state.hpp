@@ -6,7 +6,7 @@ namespace sandglass {
 
 /// A moving body whose state stays on an OpenCL device. A step is one launch per law of the elements, one per
 /// set of loaded faces, and one for the nodes (`move_nodes`). The numbers of several steps are sent together,
-/// and their launches queued without waiting.
+/// and their launches queued without waiting. States of the same elements may be used by several threads.
 template <class Real>
 class OpenClState final : public ResidentState<Real> {
  public:
@@ -15,8 +15,10 @@ class OpenClState final : public ResidentState<Real> {
   OpenClState(const OpenClForce<Real>& elements, const NodalProblem<Real>& problem);
 
   StepTraffic step_traffic() const override { return traffic_; }
+  void redirect(std::span<const typename NodalProblem<Real>::Share> shares) override;
   void write(const ResidentBody<Real>& body) override;
   void take(std::span<const ResidentStep> steps) override;
+  void wait() override;
   bool is_healthy() override;
   void read(ResidentBody<Real>& body) override;
 
@@ -38,12 +40,13 @@ class OpenClState final : public ResidentState<Real> {
   const OpenClDevice& device_;
   std::size_t nodes_;
   std::vector<std::size_t> by_row_;  // constraints in the order of the device
+  std::vector<Real> shares_;         // of their paths, m, and their masses, kg
   std::size_t numbers_of_step_;
   StepTraffic traffic_;
   std::vector<std::unique_ptr<OpenClBuffer>> constant_;  // buffers that kernels read
   std::vector<Faces> faces_;
   OpenClKernel move_, find_ill_;
-  OpenClBuffer u_, increment_, force_, load_, load_work_, reaction_, driving_, work_, ill_;
+  OpenClBuffer on_shares_, u_, increment_, force_, load_, load_work_, reaction_, driving_, work_, ill_;
 };
 
 }  // namespace sandglass

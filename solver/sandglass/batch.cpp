@@ -17,13 +17,13 @@ namespace sandglass {
 
 namespace {
 
-/// Throws InputError if a batch does not support the case.
-void require_supported(const Scene& scene) {
+/// Throws InputError if a batch does not support the case, or the processor.
+void require_supported(const Scene& scene, const Processor* processor) {
   const auto refuse_if = [&](bool condition, std::string_view rule) {
-    if (!condition) return;
-    throw InputError(
-        fmt::format("{}: {}, or simulate one body at a time", scene.settings.file.string(), rule));
+    const std::string file = scene.settings.file.string();
+    if (condition) throw InputError(fmt::format("{}: {}, or simulate one body at a time", file, rule));
   };
+  refuse_if(processor != nullptr, "a batch runs on this processor alone; choose device = 'cpu'");
   const bool remembers = std::ranges::any_of(scene.materials.list, is_viscoelastic, &Material::law);
   refuse_if(remembers || !scene.materials.axes.empty(), "a batch takes isotropic elastic laws; choose one");
   if (const BodyForce* other = first_not_dead(scene.forces))
@@ -43,8 +43,8 @@ AssembleBatch<Number>* batch_force_of(const Model& model) {
     else
       return method.packed_float.assemble_batch;
   };
-  require_supported(model.scene());
   const MethodChoice& choice = model.choice();
+  require_supported(model.scene(), choice.processor.get());
   if (const auto assemble = kernel(method_named(choice.method))) return assemble;
   std::vector<std::string_view> known;
   for (const MethodEntry& method : methods())

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "device/opencl_processor.hpp"
 #include "forces/contact_force.hpp"
 #include "io/case_file.hpp"
 #include "solve/leapfrog.hpp"
@@ -44,6 +45,7 @@ MethodChoice choice_of(const CaseSettings& of_case, const SimulationSettings& se
   if (settings.kappa) choice.kappa = settings.kappa;
   choice.precision = precision;
   choice.threads = settings.threads;
+  choice.processor = processor_named(settings.device, "device");
   return choice;
 }
 

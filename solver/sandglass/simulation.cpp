@@ -9,6 +9,7 @@
 #include "io/case_file.hpp"
 #include "io/checkpoint_file.hpp"
 #include "mesh/hash.hpp"
+#include "sandglass/device_steps.hpp"
 #include "sandglass/driven_problem.hpp"
 #include "solve/adaption.hpp"
 #include "solve/health.hpp"
@@ -25,6 +26,7 @@ class Simulation<Real>::Parts {
   Parts(Scene the_scene, const SimulationSettings& settings)
       : problem_(std::make_shared<const DrivenProblem>(std::move(the_scene), settings, precision_of<Real>)),
         leapfrog_(model(), elements(), problem_->damping()),
+        device_steps_(model()),
         longest_step_(problem_->damping()),
         adaption_(model(), body()),
         from_(problem_->targets(), 0.0),
@@ -57,6 +59,7 @@ class Simulation<Real>::Parts {
     require_in_range("seconds", seconds, Range::positive());
     const double end = time() + seconds;
     double whole = seconds, left = seconds;
+    start_path();
     while (left > 0.0) {
       const double steps = steps_in(left, longest_step_.step());
       const double step = left / steps;
@@ -65,6 +68,7 @@ class Simulation<Real>::Parts {
       from_ = imposed_;  // back at the last check, from which the path is straight
       factor_from_ = factor_;
       left = whole = end - time();
+      start_path();
     }
     arrive();
   }
@@ -88,6 +92,7 @@ class Simulation<Real>::Parts {
     elements().set_levels(body.state(), observer.levels);
     body.impose(to_, factor_to_, leapfrog_.time());
     body.evaluate_forces();
+    device_steps_.begin_anew();
     body.begin_again(observer.reactions, observer.moments);
     std::fill(body.state().increment.begin(), body.state().increment.end(), Row<Real>{});
     imposed_ = to_;
@@ -110,6 +115,7 @@ class Simulation<Real>::Parts {
     const RunSoFar run = read_checkpoint_file(file, identity(), mesh.points.size(), mesh.cells.size());
     keep(CheckpointReader(run.point));
     keep_targets(CheckpointReader(run.point));
+    device_steps_.begin_anew();
     leapfrog_.body().set_step(longest_step_.step());
     keep(StateCopy(whole_));
   }
@@ -137,22 +143,33 @@ class Simulation<Real>::Parts {
     factor_from_ = factor_to_;
   }
 
+  /// Starts steps on the straight path from `from_` to `to_`.
+  void start_path() {
+    if (device_steps_.active()) device_steps_.start(leapfrog_, from_, to_);
+  }
+
   /// A step to a share of the path from `from_` to `to_`. False if steps proved too long: the state is back
   /// at the last check, and steps are shorter from there.
   bool take(double step, double share) {
     const double rest = 1.0 - share;
     for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
     factor_ = share * factor_to_ + rest * factor_from_;
-    leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed_, factor_, leapfrog_.time()); });
+    if (device_steps_.active()) {
+      const auto coefficients = leapfrog_.tick(step);
+      device_steps_.add(coefficients, step, share, body().factors_of_loads(time(), factor_));
+    } else {
+      leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed_, factor_, leapfrog_.time()); });
+    }
     const bool last = !(share < 1.0), due = leapfrog_.step() % scene().settings.dynamics.check_interval == 0;
+    if (device_steps_.active() && (last || due)) device_steps_.bring(leapfrog_.body(), factor_, time());
     return !(due || (last && !is_finite(body()))) || check();
   }
 
   /// False as in `take`.
   bool check() {
-    const bool healthy = is_healthy(leapfrog_.body());
+    const bool healthy = device_steps_.active() ? device_steps_.is_healthy() : is_healthy(body());
     if (!healthy && longest_step_.may_shorten()) {
-      keep(StateCopy(std::as_const(whole_)));
+      go_back();
       longest_step_.shorten();
       leapfrog_.body().set_step(longest_step_.step());
       keep(StateCopy(whole_));
@@ -173,10 +190,16 @@ class Simulation<Real>::Parts {
     return true;
   }
 
+  /// Returns to the last sound state.
+  void go_back() {
+    keep(StateCopy(std::as_const(whole_)));
+    device_steps_.begin_anew();
+  }
+
   /// Returns to the last sound state and throws the error of the present one.
   [[noreturn]] void fail(const ComputationError& error) {
     const double failed = time();
-    keep(StateCopy(std::as_const(whole_)));
+    go_back();
     leapfrog_.body().set_step(longest_step_.step());
     to_ = imposed_;
     factor_to_ = factor_;
@@ -229,6 +252,7 @@ class Simulation<Real>::Parts {
 
   std::shared_ptr<const DrivenProblem> problem_;
   Leapfrog<Real> leapfrog_;
+  DeviceSteps<Real> device_steps_;
   SteadyStep longest_step_;
   double undeformed_step_ = 0.0;  // s
   Adaption<Real> adaption_;

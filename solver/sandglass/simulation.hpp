@@ -31,6 +31,7 @@ struct SimulationSettings {
   std::optional<double> damping = {};  ///< 1/s, proportional to mass; none: the case's
   double step_fraction = 0.9;          ///< the longest step over the stable one, in (0, 1]
   int threads = 1;                     ///< does not affect the bits
+  std::string device = "cpu";          ///< "opencl" or "opencl:2": takes the steps, and keeps the body
 };
 
 /// One vector per node where the time loop keeps it: component i of row r is at data[stride * r + i]. Rows

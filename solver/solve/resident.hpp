@@ -19,6 +19,12 @@ class ResidentMotion {
  public:
   ResidentMotion(const Model& model, const StateKeeper<Real>& keeper, const Leapfrog<Real>& leapfrog);
 
+  /// See ResidentState::redirect.
+  void redirect(std::span<const typename NodalProblem<Real>::Share> shares) {
+    submit();
+    state_->redirect(shares);
+  }
+
   /// Starts from the body as it is here; `driving` are the forces (N) that move its constraints.
   void begin(const Body<Real>& body, const std::vector<double>& driving);
 
@@ -26,6 +32,12 @@ class ResidentMotion {
 
   /// Collects a step.
   void add(ResidentStep step) { steps_.push_back(std::move(step)); }
+
+  /// Submits what was collected and waits for its end.
+  void finish() {
+    submit();
+    state_->wait();
+  }
 
   /// Submits what was collected and returns whether the elements are healthy after it.
   bool is_healthy();
@@ -45,7 +57,7 @@ class ResidentMotion {
 };
 
 /// The motion of a model on the processor of its elements; none if they are here, or if the state cannot stay
-/// there.
+/// there. Constraints follow the paths of the scene.
 template <class Real>
 std::unique_ptr<ResidentMotion<Real>> resident_motion(const Model& model, const InternalForce<Real>& elements,
                                                       const Leapfrog<Real>& leapfrog);

@@ -57,10 +57,21 @@ const std::vector<Dialect>& dialects() {
        .results = "@group(0) @binding({number}) var<storage, read_write> {name}: array<f32>;\n",
        .indices = "@group(0) @binding({number}) var<storage, read> {name}: array<i32>;\n",
        .between = "",
-       .integer = "",
+       .integer = "  {name}: i32,\n",
        .kernel = "{arguments}\n@compute @workgroup_size(64) fn {name}(@builtin(global_invocation_id) id: "
                  "vec3u) {{\n  let count = arrayLength(&f) / 24;\n  let e = id.x;\n  if (e < count) {{\n",
-       .keeps_sums = false}};
+       .keeps_sums = false,
+       .shared = "@group(0) @binding(1) var<storage, read> integers: array<i32>;\n"
+                 "@group(0) @binding(2) var<storage, read> numbers: array<f32>;\n"
+                 "@group(0) @binding(3) var<storage, read_write> results: array<f32>;\n",
+       .kernel_of_nodes =
+           "struct {name}_input {{\n  count: i32,\n{arguments}}}\n"
+           "@group(0) @binding(0) var<uniform> {name}_is: {name}_input;\n\n"
+           "@compute @workgroup_size(64) fn {name}(@builtin(global_invocation_id) id: vec3u) {{\n"
+           "  let e = i32(id.x);\n{begins}  if (e < {name}_is.count) {{\n",
+       .begin_of = "  let {name}{suffix} = {kernel}_is.{name};\n",
+       .constant = "let",
+       .variable = "var"}};
   return list;
 }
 

@@ -32,11 +32,18 @@ struct Dialect {
   std::string_view results;                 ///< the same, which it sets
   std::string_view indices;                 ///< the same of integers, which it reads
   std::string_view between = ", ";          ///< two of them
-  std::string_view integer = "int {name}";  ///< the same of one integer; empty: no kernels of nodes
+  std::string_view integer = "int {name}";  ///< the same of one integer
   std::string_view kernel;                  ///< from the head of the kernel to the loop over elements e
   bool keeps_sums = true;                   ///< whether its compilers keep the order of sums
   std::string_view entry = "{name}[{k} * count + e]";  ///< number k of element e in an array
   std::string_view end = "  }\n}\n";                   ///< of the kernel
+
+  // In kernels of nodes, where a language allows a kernel few arrays, theirs are parts of three.
+  std::string_view shared = {};           ///< the three, `integers`, `numbers` and `results`; empty: no limit
+  std::string_view kernel_of_nodes = {};  ///< the head of such a kernel
+  std::string_view begin_of = {};         ///< where the part {name} begins, or the integer {name}
+  std::string_view constant = {};         ///< begins the definition of a number; empty: const and its type
+  std::string_view variable = {};         ///< the same of one that changes; empty: its type
 };
 
 /// The list of dialects. A new one is an entry.

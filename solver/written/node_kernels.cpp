@@ -5,38 +5,43 @@
 
 #include <algorithm>
 #include <array>
-
-#include "base/error.hpp"
+#include <regex>
 
 namespace sandglass {
 
 namespace {
 
 /// Adds the forces of elements at node e; in both kernels, so that their bits are equal.
-constexpr std::string_view sum_of_elements = R"(      for (int k = first[e]; k < first[e + 1]; ++k) {
+constexpr std::string_view sum_of_elements = R"(      for ({int} k = first[e]; k < first[e + 1]; k++) {{
         x += f[slots[k]];
         y += f[slots[k] + elements];
         z += f[slots[k] + 2 * elements];
-      }
+      }}
 )";
 
-constexpr std::string_view sum_body = R"(    {real} x = 0, y = 0, z = 0;
+constexpr std::string_view sum_body = R"(    {real} x = 0.0f;
+    {real} y = 0.0f;
+    {real} z = 0.0f;
 {sum}    force[4 * e] = x;
     force[4 * e + 1] = y;
     force[4 * e + 2] = z;
     force[4 * e + 3] = 0;
 )";
 
-constexpr std::string_view move_body = R"(    {real} x = 0, y = 0, z = 0;
+constexpr std::string_view move_body = R"(    {real} x = 0.0f;
+    {real} y = 0.0f;
+    {real} z = 0.0f;
     if (after < 0) {{
       x = force[4 * e];
       y = force[4 * e + 1];
       z = force[4 * e + 2];
     }} else {{
 {sum}      if (first_load[e] < first_load[e + 1]) {{
-        {real} X = 0, Y = 0, Z = 0;
-        for (int k = first_load[e]; k < first_load[e + 1]; ++k) {{
-          const {real} c = steps[after + load_factors[k]];
+        {real} X = 0.0f;
+        {real} Y = 0.0f;
+        {real} Z = 0.0f;
+        for ({int} k = first_load[e]; k < first_load[e + 1]; k++) {{
+          {const_real} c = steps[after + load_factors[k]];
           X += c * g[load_slots[k]];
           Y += c * g[load_slots[k] + columns];
           Z += c * g[load_slots[k] + 2 * columns];
@@ -55,22 +60,26 @@ constexpr std::string_view move_body = R"(    {real} x = 0, y = 0, z = 0;
         force[4 * e + 1] = y;
         force[4 * e + 2] = z;
       }}
-      for (int k = first_constraint[e]; k < first_constraint[e + 1]; ++k) {{
-        const int i = components[k], m = after + angles[k];
-        const {real} r = i == 0 ? x : i == 1 ? y : z;
-        const {real} moved = shares[4 * k] * steps[m + 3] + shares[4 * k + 1] * steps[m + 4] +
+      for ({int} k = first_constraint[e]; k < first_constraint[e + 1]; k++) {{
+        {const_int} i = components[k];
+        {const_int} m = after + angles[k];
+        {const_real} r = {component};
+        {const_real} moved = shares[4 * k] * steps[m + 3] + shares[4 * k + 1] * steps[m + 4] +
                              shares[4 * k + 2] * steps[m + 5];
-        const {real} driven = r + shares[4 * k + 3] * (shares[4 * k] * steps[m + 6] +
+        {const_real} driven = r + shares[4 * k + 3] * (shares[4 * k] * steps[m + 6] +
                               shares[4 * k + 1] * steps[m + 7] + shares[4 * k + 2] * steps[m + 8]);
         work[k] += (driving[k] + driven) * moved / 2;
         driving[k] = driven;
         reaction[k] = r;
         increment[4 * e + i] = 0;
-        if (next < 0) force[4 * e + i] = 0;
+        if (next < 0) {{
+          force[4 * e + i] = 0;
+        }}
       }}
     }}
     if (next >= 0) {{
-      const {real} kept = steps[next], gained = steps[next + 1] * inverse_mass[e];
+      {const_real} kept = steps[next];
+      {const_real} gained = steps[next + 1] * inverse_mass[e];
       x = kept * increment[4 * e] + gained * x;
       y = kept * increment[4 * e + 1] + gained * y;
       z = kept * increment[4 * e + 2] + gained * z;
@@ -80,9 +89,9 @@ constexpr std::string_view move_body = R"(    {real} x = 0, y = 0, z = 0;
       u[4 * e] += x;
       u[4 * e + 1] += y;
       u[4 * e + 2] += z;
-      for (int k = first_constraint[e]; k < first_constraint[e + 1]; ++k) {{
-        const int m = next + angles[k];
-        const {real} d = shares[4 * k] * steps[m] + shares[4 * k + 1] * steps[m + 1] +
+      for ({int} k = first_constraint[e]; k < first_constraint[e + 1]; k++) {{
+        {const_int} m = next + angles[k];
+        {const_real} d = shares[4 * k] * steps[m] + shares[4 * k + 1] * steps[m + 1] +
                          shares[4 * k + 2] * steps[m + 2];
         increment[4 * e + components[k]] += d - u[4 * e + components[k]];
         u[4 * e + components[k]] = d;
@@ -90,8 +99,24 @@ constexpr std::string_view move_body = R"(    {real} x = 0, y = 0, z = 0;
     }}
 )";
 
-constexpr std::string_view ill_body = R"(    if (!(jacobian[e] > 0 && jacobian[e] * 0 == 0)) ill[0] = 1;
+/// Written so that it holds for NaN, too; no det F of a sound element is near 1e30.
+constexpr std::string_view ill_body = R"(    if (!(jacobian[e] > 0 && jacobian[e] < 1e30f)) {{
+      ill[0] = 1;
+    }}
 )";
+
+/// A body in which arrays are parts of those that kernels share: `u[k]` becomes `results[u_begin + k]`.
+std::string with_shared_arrays(const NodeKernel& kernel, std::string body) {
+  for (const auto& [name, kind, meaning] : kernel.arguments) {
+    if (kind == NodeKernel::Kind::integer) continue;
+    const std::string_view shared = kind == NodeKernel::Kind::indices ? "integers"
+                                    : kind == NodeKernel::Kind::array ? "numbers"
+                                                                      : "results";
+    body = std::regex_replace(body, std::regex(fmt::format("\\b{}\\[", name)),
+                              fmt::format("{}[{}_begin + ", shared, name));
+  }
+  return body;
+}
 
 }  // namespace
 
@@ -151,29 +176,56 @@ const NodeKernel& node_kernel(std::string_view name) {
 
 template <class Real>
 std::string node_kernel_text(const NodeKernel& kernel, const Dialect& dialect) {
-  if (dialect.integer.empty()) {
-    throw InputError(
-        fmt::format("--dialect = '{}' has no kernels of nodes; allowed: c, opencl, cuda", dialect.name));
-  }
+  const bool shares = !dialect.shared.empty();
+  const std::string real = std::is_same_v<Real, float> ? "float" : "double";
   const auto filled = [&](std::string_view format, const auto&... arguments) {
-    return fmt::format(fmt::runtime(format),
-                       fmt::arg("real", std::is_same_v<Real, float> ? "float" : "double"), arguments...);
+    return fmt::format(fmt::runtime(format), arguments...);
   };
-  std::string text = fmt::format("// {}\n", kernel.meaning);
+  std::string text = fmt::format("// {}\n", kernel.meaning), begins;
   std::vector<std::string> arguments;
   for (const auto& [name, kind, meaning] : kernel.arguments) {
     const std::array<std::string_view, 4> formats{dialect.integer, dialect.indices, dialect.array,
                                                   dialect.results};
-    arguments.push_back(filled(formats[static_cast<std::size_t>(kind)], fmt::arg("name", name),
-                               fmt::arg("number", arguments.size())));
+    const bool is_integer = kind == NodeKernel::Kind::integer;
+    arguments.push_back(filled(shares ? dialect.integer : formats[static_cast<std::size_t>(kind)],
+                               fmt::arg("real", real), fmt::arg("name", name)));
+    begins += filled(dialect.begin_of, fmt::arg("name", name), fmt::arg("kernel", kernel.name),
+                     fmt::arg("suffix", is_integer ? "" : "_begin"));
     text += fmt::format("//   {}: {}\n", name, meaning);
   }
+  const auto component = [&](std::string_view mask, std::string_view a, std::string_view b) {
+    return filled(dialect.select, fmt::arg("mask", mask), fmt::arg("a", a), fmt::arg("b", b));
+  };
+  const auto constant = [&](const std::string& type) {
+    return dialect.constant.empty() ? "const " + type : std::string(dialect.constant);
+  };
+  const auto variable = [&](const std::string& type) {
+    return dialect.variable.empty() ? type : std::string(dialect.variable);
+  };
+  const auto in_dialect = [&](std::string_view format, std::string_view sum) {
+    return filled(format, fmt::arg("real", variable(real)), fmt::arg("int", variable("int")),
+                  fmt::arg("const_real", constant(real)), fmt::arg("const_int", constant("int")),
+                  fmt::arg("component", component("i == 0", "x", component("i == 1", "y", "z"))),
+                  fmt::arg("sum", sum));
+  };
+  const std::string body = in_dialect(kernel.body, in_dialect(sum_of_elements, ""));
   return text +
-         filled(dialect.kernel, fmt::arg("name", kernel.name),
+         filled(shares ? dialect.kernel_of_nodes : dialect.kernel, fmt::arg("name", kernel.name),
+                fmt::arg("begins", begins),
                 fmt::arg("arguments", fmt::to_string(fmt::join(arguments, dialect.between)))) +
-         filled(kernel.body, fmt::arg("sum", sum_of_elements)) + std::string(dialect.end);
+         (shares ? with_shared_arrays(kernel, body) : body) + std::string(dialect.end);
 }
 
+template <class Real>
+std::string node_kernels_text(const Dialect& dialect) {
+  std::string text(dialect.shared);
+  for (const NodeKernel& kernel : node_kernels())
+    text += (text.empty() ? "" : "\n") + node_kernel_text<Real>(kernel, dialect);
+  return text;
+}
+
+template std::string node_kernels_text<double>(const Dialect&);
+template std::string node_kernels_text<float>(const Dialect&);
 template std::string node_kernel_text<double>(const NodeKernel&, const Dialect&);
 template std::string node_kernel_text<float>(const NodeKernel&, const Dialect&);
 

@@ -32,9 +32,13 @@ const std::vector<NodeKernel>& node_kernels();
 /// The kernel of this name.
 const NodeKernel& node_kernel(std::string_view name);
 
-/// Its text, with a comment that describes its arguments. Throws InputError for dialects without such
-/// kernels.
+/// Its text, with a comment that describes its arguments. In a dialect with shared arrays, the integers of a
+/// kernel are those of its input, and where its arrays begin in them.
 template <class Real>
 std::string node_kernel_text(const NodeKernel& kernel, const Dialect& dialect);
+
+/// The texts of all, for one file.
+template <class Real>
+std::string node_kernels_text(const Dialect& dialect);
 
 }  // namespace sandglass

@@ -13,6 +13,7 @@
 #include "benchmark/cost.hpp"
 #include "benchmark/force_check.hpp"
 #include "benchmark/stepped_model.hpp"
+#include "solve/resident.hpp"
 
 namespace sandglass {
 
@@ -90,6 +91,8 @@ std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>
   std::vector<BenchRecord> records;
   std::erase_if(variants, [&](const MethodChoice& choice) {
     std::string why = choice.processor ? choice.processor->refusal(scene.materials, choice) : "";
+    if (const auto reason = why_not_resident(scene); choice.processor && why.empty() && !reason.empty())
+      why = fmt::format("the state cannot stay on the device: {}", reason);
     if (method_named(choice.method).is_condensed && nodes > most_condensed_nodes) {
       why = fmt::format("factorising {} nodes takes too long; at most {} are timed", nodes,
                         most_condensed_nodes);

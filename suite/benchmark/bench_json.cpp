@@ -5,6 +5,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "assembly/processor.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -62,6 +64,7 @@ std::string to_json(const Provenance& provenance, const BenchPlan& plan, Machine
   for (const auto& [name, value] : provenance) document[name] = value;
   document["machine"] = {{"processors", available_processors()},
                          {"last_level_cache_bytes", last_level_cache()}};
+  if (plan.processor != nullptr) document["device"] = plan.processor->name();
   document["repetitions"] = plan.settings.repetitions;
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
     for (const int threads : plan.threads) {

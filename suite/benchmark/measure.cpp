@@ -21,6 +21,7 @@ double seconds_between(Clock::time_point start, Clock::time_point end) {
 double time_steps(Steppable& timed, int steps) {
   const auto start = Clock::now();
   for (int s = 0; s < steps; ++s) timed.step();
+  timed.finish();
   return seconds_between(start, Clock::now());
 }
 
@@ -28,6 +29,7 @@ double time_steps(Steppable& timed, int steps) {
 void warm_up(Steppable& timed, std::size_t state, int steps) {
   timed.restart(state);
   for (int s = 0; s < steps; ++s) timed.step();
+  timed.finish();
 }
 
 int steps_per_batch(Steppable& timed, double batch_seconds) {
@@ -51,6 +53,7 @@ void time_batches(const Entry& entry, int steps, Timing& timing) {
     auto before = Clock::now();
     for (int s = 0; s < steps; ++s) {
       timed.step();
+      timed.finish();
       const auto now = Clock::now();
       timing.seconds_of_a_step.push_back(seconds_between(before, now));
       before = now;

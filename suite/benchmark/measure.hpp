@@ -29,6 +29,9 @@ class Steppable {
 
   virtual void step() = 0;
 
+  /// Waits for the end of the steps, where another processor takes them.
+  virtual void finish() {}
+
   /// The work of a run every few steps: checks that the body is healthy, and chooses the next step.
   virtual void check() = 0;
 

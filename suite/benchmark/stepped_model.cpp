@@ -15,6 +15,7 @@
 #include "solve/adaption.hpp"
 #include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
+#include "solve/resident.hpp"
 
 namespace sandglass {
 
@@ -28,7 +29,8 @@ class SteppedModelOf final : public SteppedModel {
   SteppedModelOf(const Scene& scene, const MethodChoice& choice, const OwnMotion* motion)
       : model_(scene, choice),
         elements_(*std::get<std::unique_ptr<InternalForce<Real>>>(model_.internal_force())),
-        leapfrog_(model_, elements_, 0.0) {
+        leapfrog_(model_, elements_, 0.0),
+        resident_(resident_motion(model_, elements_, leapfrog_)) {
     const double imposed = largest_imposed(scene);
     if (imposed > 0.0) loading_ = relative_height * element_size(scene) / imposed;
     const bool arrived = motion != nullptr && !motion->end.empty();
@@ -45,6 +47,9 @@ class SteppedModelOf final : public SteppedModel {
     constexpr double step_fraction = 0.9, damping = 0.02;  // over the stable step; c dt / 2
     step_size_ = step_fraction * leapfrog_.stable_step(model_).step;
     coefficients_ = {(1.0 - damping) / (1.0 + damping), step_size_ * step_size_ / (1.0 + damping)};
+    numbers_ = {
+        coefficients_.keep, coefficients_.gain, step_size_, body.factors_of_loads(loading_, loading_), {}};
+    for (const double angle : scene.angles) numbers_.angles.push_back({path_terms(angle, loading_), {}, {}});
   }
 
   NodalField forces() override { return forces_on_the_way(elements_, wavy_field(model_.scene())); }
@@ -54,10 +59,16 @@ class SteppedModelOf final : public SteppedModel {
   void restart(std::size_t state) override {
     leapfrog_.body().state() = starts_[state];
     leapfrog_.body().evaluate_forces();
+    if (resident_ != nullptr) resident_->begin(leapfrog_.body(), {});
   }
 
   void step() override {
+    if (resident_ != nullptr) return resident_->add(numbers_);
     leapfrog_.take(step_size_, coefficients_, [this](Body<Real>& body) { body.impose(loading_); });
+  }
+
+  void finish() override {
+    if (resident_ != nullptr) resident_->finish();
   }
 
   void check() override {
@@ -66,6 +77,10 @@ class SteppedModelOf final : public SteppedModel {
   }
 
   void require_healthy() override {
+    if (resident_ != nullptr) {
+      std::vector<double> none;
+      resident_->bring(leapfrog_.body(), loading_, loading_, none, none);
+    }
     try {
       sandglass::require_healthy(leapfrog_.body(), 0);
     } catch (const ComputationError& error) {
@@ -75,8 +90,13 @@ class SteppedModelOf final : public SteppedModel {
   }
 
   Work work() const override {
-    return work_of(model_.choice(), model_.scene().materials.list.front().law, elements_.layout(),
-                   model_.scene().mesh);
+    const Mesh& mesh = model_.scene().mesh;
+    Work work = work_of(model_.choice(), model_.scene().materials.list.front().law, elements_.layout(), mesh);
+    if (resident_ != nullptr) {
+      const auto bytes = static_cast<double>(resident_->step_traffic().bytes);
+      work.bytes = bytes / static_cast<double>(mesh.cells.size());
+    }
+    return work;
   }
 
  private:
@@ -93,6 +113,8 @@ class SteppedModelOf final : public SteppedModel {
   double loading_ = 0.0;
   double step_size_ = 0.0, stable_step_ = 0.0;
   LeapfrogClock::Coefficients coefficients_{};
+  std::unique_ptr<ResidentMotion<Real>> resident_;  // null: steps are taken here
+  ResidentStep numbers_{};
 };
 
 }  // namespace

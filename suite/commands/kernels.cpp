@@ -9,7 +9,10 @@
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "commands/execution_options.hpp"
+#include "io/case_file.hpp"
+#include "problem/make_scene.hpp"
 #include "written/kernel_text.hpp"
+#include "written/mesh_constants.hpp"
 #include "written/node_kernels.hpp"
 
 namespace sandglass {
@@ -66,15 +69,19 @@ bool needs_order_of_sums(const Program& program) {
   });
 }
 
+/// Throws InputError for a method without such a kernel.
+void require_written(const std::string& method) {
+  method_named(method, "METHOD");
+  if (const auto reason = why_not_written(method); !reason.empty()) {
+    throw InputError(fmt::format("METHOD = '{}' has no kernel that could be written: {}", method, reason));
+  }
+}
+
 }  // namespace
 
 std::string kernel_source(const KernelRequest& request, const Case& description,
                           const Provenance& provenance) {
-  method_named(request.method, "METHOD");
-  if (const auto reason = why_not_written(request.method); !reason.empty()) {
-    throw InputError(
-        fmt::format("METHOD = '{}' has no kernel that could be written: {}", request.method, reason));
-  }
+  require_written(request.method);
   const Dialect& dialect = dialect_named(request.dialect);
   const auto of = [&](std::string_view name) {
     const auto found = std::ranges::find(provenance, name, &Provenance::value_type::first);
@@ -104,11 +111,30 @@ std::string kernel_source(const KernelRequest& request, const Case& description,
   std::replace(title.name.begin(), title.name.end(), '-', '_');
   const auto written = [&]<class Real>(Real) {
     if (!request.step) return kernel_text<Real>(force, dialect, title);
-    std::string text = kernel_text<Real>(force, dialect, title, NodalValues::of_nodes);
-    for (const NodeKernel& kernel : node_kernels()) text += "\n" + node_kernel_text<Real>(kernel, dialect);
-    return text;
+    return kernel_text<Real>(force, dialect, title, NodalValues::of_nodes) + "\n" +
+           node_kernels_text<Real>(dialect);
   };
   return single ? written(0.0F) : written(0.0);
+}
+
+std::string kernel_constants(const KernelRequest& request, const Case& description) {
+  require_written(request.method);
+  const Precision precision = precision_in(dialect_named(request.dialect), request.precision);
+  material_of(description, request.material);
+  const Scene scene = make_scene(with_mesh(description));
+  const MethodChoice choice = method_of(scene.settings, request.method);
+  std::vector<std::vector<double>> of_elements;
+  for (std::size_t e = 0; e < scene.mesh.cells.size(); ++e) {
+    if (scene.materials.of(e) + 1 != static_cast<std::size_t>(request.material.value_or(1))) continue;
+    of_elements.push_back(constants_of(scene.mesh, scene.materials, choice, e));
+  }
+  const auto bytes = [&]<class Real>(Real) {
+    std::vector<Real> numbers;
+    for (std::size_t k = 0; k < of_elements.front().size(); ++k)
+      for (const auto& own : of_elements) numbers.push_back(static_cast<Real>(own[k]));
+    return std::string(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Real));
+  };
+  return precision == Precision::single_precision ? bytes(0.0F) : bytes(0.0);
 }
 
 }  // namespace sandglass

@@ -24,4 +24,9 @@ struct KernelRequest {
 std::string kernel_source(const KernelRequest& request, const Case& description,
                           const Provenance& provenance);
 
+/// The bytes of the array `constants` of that kernel, in its precision, for the elements of the case's mesh
+/// that have its material, in the order of the mesh: number k of element e at k * count + e. Throws
+/// InputError as above.
+std::string kernel_constants(const KernelRequest& request, const Case& description);
+
 }  // namespace sandglass

@@ -86,6 +86,7 @@ class Body:
         damping: float | None = ...,
         step_fraction: float = ...,
         threads: int = ...,
+        device: str = ...,
     ) -> Simulation: ...
     def batch(
         self,
@@ -179,6 +180,7 @@ class Simulation:
         damping: float | None = ...,
         step_fraction: float = ...,
         threads: int = ...,
+        device: str = ...,
     ) -> None: ...
     @staticmethod
     def of_mesh(
@@ -193,6 +195,7 @@ class Simulation:
         damping: float | None = ...,
         step_fraction: float = ...,
         threads: int = ...,
+        device: str = ...,
         element_sets: Mapping[str, ArrayLike] = ...,
     ) -> Simulation: ...
     def move(self, set: str, displacement: ArrayLike) -> None: ...
@@ -297,6 +300,7 @@ def kernels(
     precision: Literal["double", "float"] | None = ...,
     material: int | None = ...,
     step: bool = ...,
+    constants: _Path | None = ...,
 ) -> str: ...
 def write_mesh(
     case: _Case,

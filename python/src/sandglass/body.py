@@ -161,10 +161,11 @@ class Body:
         damping=None,
         step_fraction=0.9,
         threads=1,
+        device="cpu",
     ):
         """An `sg.Simulation` of the body, to move and advance, with its keywords."""
         settings = {"precision": precision, "method": method, "kappa": kappa, "damping": damping}
-        settings |= {"step_fraction": step_fraction, "threads": threads}
+        settings |= {"step_fraction": step_fraction, "threads": threads, "device": device}
         points, cells, sets, element_sets = self._mesh()
         text = toml_text(self._case_tables())
         return _sandglass.Simulation.of_mesh(

@@ -159,16 +159,20 @@ def flops():
     return _called("flops")
 
 
-def kernels(method, case, *, dialect="c", precision=None, material=None, step=False):
+def kernels(
+    method, case, *, dialect="c", precision=None, material=None, step=False, constants=None
+):
     """The force of a method's elements with a case's law as source code for other processors.
 
     `dialect`: the language; a wrong one is answered with those known. `precision`: "double" or
     "float"; None: double where the dialect has it. `material`: its number in the case, from 1.
     `step`: add the kernels that take steps where the state is; the force then reads nodes by place.
-    Returns the text.
+    `constants`: a file for the array of this name for the elements of the case's mesh, in the
+    numbers of the kernel. Returns the text.
     """
     with _files(case) as (file,):
         given = dict(case=file, dialect=dialect, precision=precision, material=material, step=step)
+        given["constants"] = "" if constants is None else path_text("constants", constants)
         return _called("kernels", method=method, **given)
 
 
