@@ -81,6 +81,7 @@ class LoadLevels {
       : model_(model),
         chosen_(model.scene().settings.relaxation.levels),
         depends_on_path_(forces_depend_on_path),
+        rubs_(remember_path(model.scene().forces)),
         equal_(chosen_ > 0 || forces_depend_on_path),
         turns_(turning_loads(model.scene().settings.relaxation.cycles)),
         longest_(longest_increment(model.scene())),
@@ -176,6 +177,7 @@ class LoadLevels {
   /// level that is farther from equilibrium than the increment of the load would mislead the next one.
   bool far_enough(const Equilibrium<Real>& search) const {
     constexpr double residual = 0.1, reduction = 0.03, residual_of_first = 1e-3;
+    if (rubs_) return search.residual() < residual_of_first && search.contact_agrees();
     if (equal_ && last_.load == 0.0) return search.residual() < residual_of_first;
     if (failures_ >= few_failures) {
       const double load = std::max(std::abs(load_), std::abs(last_.load));
@@ -298,6 +300,7 @@ class LoadLevels {
   const Model& model_;
   int chosen_;
   bool depends_on_path_;
+  bool rubs_;  // whether there is friction
   bool equal_;
   std::vector<double> turns_;
   double longest_;

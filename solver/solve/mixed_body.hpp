@@ -147,6 +147,7 @@ class MixedBody {
       archive("linearized contact", rows);
       contact_ = springs_of(rows);
       multigrid_.set_contact(contact_);
+      set_drags();
     }
     linearized_ = false;
     body_.keep(archive);
@@ -162,6 +163,9 @@ class MixedBody {
 
   /// Whether nodes have touched obstacles, or left them, since the last linearization.
   bool contact_changed();
+
+  /// Sets the friction that residuals leave out from the linearized contact.
+  void set_drags();
   void slide();
 
   /// The sum over all components of a term of the stiffness (N/m) and the displacement (m).
@@ -214,6 +218,13 @@ class MixedBody {
   Rows<Real> before_, slid_;                   // displacements before and after nodes slide along obstacles
   std::size_t most_springs_;                   // of contact
   std::vector<Spring> contact_, contact_now_;  // linearized and present
+  /// In the residual of a node that slips, the force of its contact along the surface is replaced by the other
+  /// normal forces times the coefficient of friction: it is as stiff as the body then, not as the contact.
+  struct Drag {
+    std::size_t row;
+    Row<float> normal, along;
+  };
+  std::vector<Drag> drags_;
   bool linearized_ = false;                    // whether the multigrid method belongs to these two
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
