@@ -78,6 +78,9 @@ constexpr double deep = 0.8;
 /// frequency, twice in the mean, of 0.9, 1.015 times, of 0.6, 1.001 times.
 constexpr double rate_of_one_sided = 9.0;
 
+/// How a point touches at rest, in its rows; without friction it sticks.
+constexpr double not_at_all = 0.0, sticking = 1.0, slipping = 2.0;
+
 constexpr std::string_view path_of_friction = "friction depends on the path";
 
 /// Two directions of length one at right angles to a third.

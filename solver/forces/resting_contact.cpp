@@ -7,9 +7,6 @@ namespace sandglass {
 
 namespace {
 
-/// How a node touches.
-constexpr double not_at_all = 0.0, sticking = 1.0, slipping = 2.0;
-
 /// It keeps a row for each node: how it would touch if that were not fixed, and contrary; its depth and the
 /// depth of its constant force, m; how it touches. With friction also two rows of the last load level: from where the
 /// node slips, in the frame of the obstacle and relative to the undeformed body, m; the extension of its

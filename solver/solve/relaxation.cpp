@@ -333,9 +333,10 @@ class Search {
       throw ComputationError(fmt::format("{}; {}", error.what(), where), error.breakdown());
     }
     throw ComputationError(
-        fmt::format("no equilibrium found even with tiny increments of the load; {}; remedy: impose less, "
-                    "or refine the mesh",
-                    where),
+        fmt::format("no static equilibrium found even with tiny increments of the load; {}{}; remedy: impose "
+                    "less, or refine the mesh",
+                    where,
+                    remember_path(model_.scene().forces) ? "; a body that slips everywhere has none" : ""),
         Breakdown::no_balance);
   }
 
