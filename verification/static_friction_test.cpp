@@ -68,9 +68,6 @@ double force_over_weight(double friction, bool on_wedge) {
   const Scene scene = wedges.scene();
   const Relaxation found = relax(Model(scene, {"tl-perturbation"}), recorder);
   EXPECT_TRUE(found.converged);
-  printf("mu %g: %ld evaluations, %zu rows, F/G %.6f depth %g lost %g\n", friction, (long)found.steps,
-         recorder.rows.size(), recorder.rows.back().reactions.at("end")[0] / G, recorder.rows.back().depth,
-         recorder.rows.back().friction);
   return recorder.rows.back().reactions.at("end")[0] / G;
 }
 
@@ -159,7 +156,6 @@ TEST(StaticFriction, jaws_hold_a_block_with_its_weight) {
   EXPECT_NEAR(left[2] + right[2], weight, 1e-6 * weight);
   EXPECT_NEAR(left[2], right[2], 1e-6 * weight);
   EXPECT_GT(0.5 * left[0], left[2]);
-  printf("jaws %ld left %g %g lost %g\n", (long)found.steps, left[0], left[2], recorder.rows.back().friction);
   Recorder silent;
   const Scene weak = gripped_block(0.01).scene();
   EXPECT_THROW(relax(Model(weak, {"tl-perturbation"}), silent), ComputationError);
@@ -197,11 +193,12 @@ TEST(StaticFriction, answers_as_a_slow_motion) {
   for (std::size_t n = 0; n < found.u.size(); ++n)
     largest = std::max(largest, distance(found.u[n], motion.u[n]));
   const auto& a = levels.rows.back(), b = steps.rows.back();
-  printf("levels %ld: F %g %g %g lost %g depth %g; motion %g %g %g lost %g depth %g; largest %g\n", (long)found.steps,
-         a.reactions.at("tool")[0], a.reactions.at("tool")[1], a.reactions.at("tool")[2], a.friction, a.depth,
-         b.reactions.at("tool")[0], b.reactions.at("tool")[1], b.reactions.at("tool")[2], b.friction, b.depth,
-         largest);
-  EXPECT_LT(largest, 2.0 * b.depth);
+  EXPECT_LT(largest, 1.2 * b.depth);
+  for (const std::size_t i : {0U, 2U}) {
+    const double F = b.reactions.at("tool")[i];
+    EXPECT_NEAR(a.reactions.at("tool")[i], F, 1.2 * b.depth / 0.08 * std::abs(F)) << i;
+  }
+  EXPECT_NEAR(a.friction, b.friction, 1.2 * b.depth / 0.08 * b.friction);
 }
 
 /// The same bits for any number of threads, and after any checkpoint, where anchors are those of the last
@@ -218,7 +215,7 @@ TEST(StaticFriction, has_the_same_bits) {
   ASSERT_GT(whole.kept().size(), 5U);
   for (const RunSoFar& kept : whole.kept()) {
     KeepingRecorder resumed(kept);
-    EXPECT_EQ(solve(2, resumed, &kept.point).u, u);
+    EXPECT_EQ(solve(1, resumed, &kept.point).u, u);
     EXPECT_EQ(resumed.run().history.back().friction, whole.run().history.back().friction);
   }
 }

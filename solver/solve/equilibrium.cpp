@@ -155,6 +155,8 @@ bool Equilibrium<Real>::accelerated() {
 template <class Real>
 void Equilibrium<Real>::update_contact() {
   const int contrary = body().touch().contrary;
+  static const bool trace = std::getenv("FR_TRACE") != nullptr;
+  if (trace) fprintf(stderr, "update: ev %ld norm %g contrary %d failed %d share %g updates %d\n", mixed_.evaluations(), mixed_.norm(), contrary, contact_.failed, contact_.share, contact_.updates);
   if (contrary == 0) return;
   if (contrary < contact_.fewest) {
     contact_.fewest = contrary;
@@ -189,6 +191,7 @@ bool Equilibrium<Real>::linearized_step() {
   const bool far = norms_.size() % steps_between_updates == 0 && norm > close_enough * norms_.front();
   if (far && is_healthy(body())) mixed_.linearize();
   mixed_.linearize_contact();
+  if (mixed_.norm() != norm) acceleration_.clear();  // what slips has changed, and with it the residuals
   reduced_ = mixed_.residuals();
   step_ = reduced_;
   acceleration_.combine(reduced_, step_);

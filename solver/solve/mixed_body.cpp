@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "assembly/method_entry.hpp"
 #include "element/one_point.hpp"
@@ -101,42 +100,12 @@ bool MixedBody<Real>::contact_changed() {
 }
 
 template <class Real>
-void MixedBody<Real>::set_drags() {
-  struct Sums {
-    double weight = 0.0;
-    Vector normal{}, along{};
-  };
-  std::map<int, Sums> by_row;
-  for (const Spring& spring : contact_) {
-    if (spring.drag.x == Row<float>{}.x) continue;
-    for (std::size_t n = 0; n < spring.size; ++n) {
-      Sums& sums = by_row[spring.nodes[n]];
-      const double weight = spring.weights[n];  // negative on the other surface, where both turn
-      sums.weight += std::abs(weight);
-      for (std::size_t i = 0; i < 3; ++i) {
-        sums.normal[i] += weight * double{spring.root[i]};
-        sums.along[i] += weight * double{spring.drag[i]};
-      }
-    }
-  }
-  drags_.clear();
-  for (const auto& [row, sums] : by_row) {
-    const double size = length(sums.normal);
-    if (!(size > 0.0)) continue;
-    Drag drag{static_cast<std::size_t>(row), {}, {}};
-    for (std::size_t i = 0; i < 3; ++i) {
-      drag.normal[i] = static_cast<float>(sums.normal[i] / size);
-      drag.along[i] = free_[drag.row][i] > Real(0) ? static_cast<float>(sums.along[i] / sums.weight) : 0.0f;
-    }
-    drags_.push_back(drag);
-  }
-}
-
-template <class Real>
 void MixedBody<Real>::linearize_contact() {
   if (!contact_changed()) return;
   contact_ = contact_now_;
-  set_drags();
+  const bool dragged = !drags_.empty();
+  drags_ = drags_of(contact_, free_);
+  if (dragged || !drags_.empty()) compare();
   multigrid_.set_contact(contact_);
   if (linearized_) multigrid_.update_contact();
 }
@@ -254,11 +223,7 @@ void MixedBody<Real>::compare() {
 #pragma omp simd
     for (std::size_t k = first; k < last; ++k) r[k] = static_cast<float>(f[k] + free[k] * g[k]);
   });
-  for (const Drag& drag : drags_) {
-    Row<float>& of_node = residuals_.u[drag.row];
-    const float normal = drag.normal[0] * of_node[0] + drag.normal[1] * of_node[1] + drag.normal[2] * of_node[2];
-    for (std::size_t i = 0; i < 3; ++i) of_node[i] += normal * drag.along[i];
-  }
+  replace_drags(drags_, residuals_.u);
   for_each_element([&](std::size_t e, std::size_t c) { residuals_.p[c] = static_cast<float>(defect_[e]); });
   weigh(residuals_);
 }

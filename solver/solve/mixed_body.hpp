@@ -5,6 +5,7 @@
 
 #include "multigrid/saddle_multigrid.hpp"
 #include "solve/body.hpp"
+#include "solve/drag.hpp"
 #include "solve/residual_weights.hpp"
 
 namespace sandglass {
@@ -147,7 +148,7 @@ class MixedBody {
       archive("linearized contact", rows);
       contact_ = springs_of(rows);
       multigrid_.set_contact(contact_);
-      set_drags();
+      drags_ = drags_of(contact_, free_);
     }
     linearized_ = false;
     body_.keep(archive);
@@ -163,9 +164,6 @@ class MixedBody {
 
   /// Whether nodes have touched obstacles, or left them, since the last linearization.
   bool contact_changed();
-
-  /// Sets the friction that residuals leave out from the linearized contact.
-  void set_drags();
   void slide();
 
   /// The sum over all components of a term of the stiffness (N/m) and the displacement (m).
@@ -218,13 +216,7 @@ class MixedBody {
   Rows<Real> before_, slid_;                   // displacements before and after nodes slide along obstacles
   std::size_t most_springs_;                   // of contact
   std::vector<Spring> contact_, contact_now_;  // linearized and present
-  /// In the residual of a node that slips, the force of its contact along the surface is replaced by the other
-  /// normal forces times the coefficient of friction: it is as stiff as the body then, not as the contact.
-  struct Drag {
-    std::size_t row;
-    Row<float> normal, along;
-  };
-  std::vector<Drag> drags_;
+  std::vector<Drag> drags_;                    // of the linearized ones
   bool linearized_ = false;                    // whether the multigrid method belongs to these two
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
