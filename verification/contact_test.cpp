@@ -64,7 +64,7 @@ struct Touched {
     resolver.cells = mesh.cells;
     resolver.young_moduli = {1000.0};
     obstacle.resolve(resolver);
-    force = resolver.all().back();
+    force = at_rest(resolver.all()).back();
     contact = contacts_of({force}).front();
     for (const LoadCurve& curve : resolver.curves) factors.push_back(curve.at(0.0, 1.0));
   }

@@ -83,6 +83,7 @@ void Equilibrium<Real>::take_own_pressures() {
 template <class Real>
 void Equilibrium<Real>::begin() {
   mixed_.linearize();
+  mixed_.set_drags();
   mixed_.weigh();
 }
 
@@ -173,12 +174,13 @@ void Equilibrium<Real>::update_contact() {
   mixed_.evaluate();
   if (stage_ != Stage::acceleration) return;
   body().fix_contact(true);
+  mixed_.linearize_contact();
+  mixed_.set_drags();
   contact_.norm = mixed_.norm();
   contact_.steps = 0;
   if (++contact_.updates > most_updates) return;
   progress_ = {contact_.norm};
   acceleration_.clear();
-  mixed_.linearize_contact();
 }
 
 /// Moves to where the steps so far predict the smallest residual, and on by a multigrid cycle; shorter while
@@ -191,7 +193,6 @@ bool Equilibrium<Real>::linearized_step() {
   const bool far = norms_.size() % steps_between_updates == 0 && norm > close_enough * norms_.front();
   if (far && is_healthy(body())) mixed_.linearize();
   mixed_.linearize_contact();
-  if (mixed_.norm() != norm) acceleration_.clear();  // what slips has changed, and with it the residuals
   reduced_ = mixed_.residuals();
   step_ = reduced_;
   acceleration_.combine(reduced_, step_);

@@ -103,11 +103,15 @@ template <class Real>
 void MixedBody<Real>::linearize_contact() {
   if (!contact_changed()) return;
   contact_ = contact_now_;
+  multigrid_.set_contact(contact_);
+  if (linearized_) multigrid_.update_contact();
+}
+
+template <class Real>
+void MixedBody<Real>::set_drags() {
   const bool dragged = !drags_.empty();
   drags_ = drags_of(contact_, free_);
   if (dragged || !drags_.empty()) compare();
-  multigrid_.set_contact(contact_);
-  if (linearized_) multigrid_.update_contact();
 }
 
 template <class Real>
