@@ -8,9 +8,9 @@ namespace sandglass {
 namespace {
 
 /// It keeps a row for each node: how it would touch if that were not fixed, and contrary; its depth and the
-/// depth of its constant force, m; how it touches. With friction also two rows of the last load level: from where the
-/// node slips, in the frame of the obstacle and relative to the undeformed body, m; the extension of its
-/// spring along the obstacle, m.
+/// depth of its constant force, m; how it touches. With friction also two rows of the last load level: from
+/// where the node slips, in the frame of the obstacle and relative to the undeformed body, m; the extension
+/// of its spring along the obstacle, m.
 class RestingContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
@@ -152,7 +152,8 @@ class RestingContact final : public ObstacleContact {
                    if (gap.distance > 0.0) return;
                    holds.push_back({{{nodes_[k].node, 1.0}}, gap.normal});
                    if (!rubs()) return;
-                   for (const Vector& t : tangents_of(gap.normal)) holds.push_back({{{nodes_[k].node, 1.0}}, t});
+                   for (const Vector& t : tangents_of(gap.normal))
+                     holds.push_back({{{nodes_[k].node, 1.0}}, t});
                  });
   }
 

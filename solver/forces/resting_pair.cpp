@@ -20,10 +20,10 @@ std::string_view why_none(const Contact& contact) {
 }
 
 /// The force of a point that touches a triangle is along its normal, in proportion to the depth behind its
-/// plane: the derivative of an energy, and without moment. Points remember also their triangle, how they would
-/// touch if that were not fixed, and contrary, their depth and the depth of their constant force, m. With
-/// friction also three rows of the last load level: the weights of the point of the other surface from which
-/// they slip; its face and their gap there, m; the extension of their spring along the surface, m.
+/// plane: the derivative of an energy, and without moment. Points remember also their triangle, how they
+/// would touch if that were not fixed, and contrary, their depth and the depth of their constant force, m.
+/// With friction also three rows of the last load level: the weights of the point of the other surface from
+/// which they slip; its face and their gap there, m; the extension of their spring along the surface, m.
 class RestingPair final : public SurfacePair {
  public:
   explicit RestingPair(const SurfacePair& pair, const ForceTraits& traits)
@@ -50,8 +50,8 @@ class RestingPair final : public SurfacePair {
       Vector along = one.along;
       if (one.slips()) slip(along, one.most);
       memory.pushes[3] += 0.5 * one.stiffness * dot(along, along);
-      const Vector force = sum(sum({}, one.stiffness * (depth + one.constant), one.plane.normal),
-                               -one.stiffness, along);
+      const Vector force =
+          sum(sum({}, one.stiffness * (depth + one.constant), one.plane.normal), -one.stiffness, along);
       for_each_node(one, [&](int node, double weight) {
         for (std::size_t i = 0; i < 3; ++i) forces[node][i] += weight * force[i];
       });
@@ -224,8 +224,8 @@ class RestingPair final : public SurfacePair {
       const Row<double>*of_from = of_surface(memory, side.from), *of_onto = of_surface(memory, side.onto);
       const SurfacePoint& point = from.points()[k];
       const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
-      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from),
-                                            given_.reach, side.neighbours[k], of_onto);
+      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), given_.reach,
+                                            side.neighbours[k], of_onto);
       memory.sums[0] += stiffness_of(side, k) * lost(of_point[stretch]);
       of_point[stretch] = {};
       of_point[place] = {{-1.0, 0.0, 0.0, 0.0}};

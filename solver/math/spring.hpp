@@ -17,7 +17,7 @@ struct Spring {
   std::array<int, 8> nodes;  ///< of the mesh, or rows
   std::array<float, 8> weights;
   std::size_t size;
-  Row<float> root;  ///< its direction, of length one, times the root of its stiffness, root of N/m
+  Row<float> root;       ///< its direction, of length one, times the root of its stiffness, root of N/m
   Row<float> drag = {};  ///< the coefficient of friction times the direction of slip, at right angles to root
 
   /// Its extension under displacements (m) at `nodes`, times the root of its stiffness, root of J.
@@ -59,7 +59,10 @@ inline std::vector<Spring> springs_of(const Rows<float>& rows) {
   std::vector<Spring> springs;
   for (std::size_t k = 0; 6 * k < rows.size() && rows[6 * k + 1][0] > 0.0f; ++k) {
     const Row<float>& of_spring = rows[6 * k + 1];
-    Spring spring{{}, {}, static_cast<std::size_t>(of_spring[0]), rows[6 * k],
+    Spring spring{{},
+                  {},
+                  static_cast<std::size_t>(of_spring[0]),
+                  rows[6 * k],
                   {{of_spring[1], of_spring[2], of_spring[3]}}};
     for (std::size_t n = 0; n < spring.size; ++n) {
       const Row<float>& row = rows[6 * k + 2 + n / 2];

@@ -42,7 +42,8 @@ std::vector<Drag> drags_of(const std::vector<Spring>& springs, const Rows<Real>&
     Drag drag{at(row), {}, {}};
     for (std::size_t i = 0; i < 3; ++i) {
       drag.normal[i] = static_cast<float>(sums.normal[i] / size);
-      drag.along[i] = static_cast<float>(static_cast<double>(free[drag.row][i]) * sums.along[i] / sums.weight);
+      drag.along[i] =
+          static_cast<float>(static_cast<double>(free[drag.row][i]) * sums.along[i] / sums.weight);
     }
     drags.push_back(drag);
   }

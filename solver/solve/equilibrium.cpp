@@ -156,8 +156,6 @@ bool Equilibrium<Real>::accelerated() {
 template <class Real>
 void Equilibrium<Real>::update_contact() {
   const int contrary = body().touch().contrary;
-  static const bool trace = std::getenv("FR_TRACE") != nullptr;
-  if (trace) fprintf(stderr, "update: ev %ld norm %g contrary %d failed %d share %g updates %d\n", mixed_.evaluations(), mixed_.norm(), contrary, contact_.failed, contact_.share, contact_.updates);
   if (contrary == 0) return;
   if (contrary < contact_.fewest) {
     contact_.fewest = contrary;

@@ -27,7 +27,9 @@ class Equilibrium {
  public:
   /// For the undeformed body of the model; `start` must follow.
   Equilibrium(const Model& model, const InternalForce<Real>& elements)
-      : mixed_(model, elements), acceleration_(blocks()), depends_on_path_(depends_on_path(model, elements)) {}
+      : mixed_(model, elements),
+        acceleration_(blocks()),
+        depends_on_path_(depends_on_path(model, elements)) {}
 
   /// The body, with the forces and displacements of the last evaluation. Callers that move it must set its
   /// increment.
