@@ -175,7 +175,7 @@ TEST(LineContact, sticks_in_the_middle_of_two_cylinders) {
   expect_stick(Way::motion);
 }
 
-/// Pressed, and pulled in four further load levels.
+/// Pressed in two load levels, and pulled in four. Found: a + .8 %, c -.9 %.
 TEST(LineContact, sticks_in_the_middle_at_rest) {
   expect_stick(Way::levels);
 }
