@@ -107,9 +107,10 @@ class LoadLevels {
   bool full() const { return leg_ + 1 == turns_.size() && load_ == turns_.back(); }
 
   /// The effort for this level: brief, unless shorter increments have not helped. Forces that depend on the
-  /// path have no potential, so that only patience can help.
+  /// path have no potential, so that only patience can help; with friction it helps more than shorter
+  /// increments.
   Effort effort() const {
-    if (in_a_row_ == 0 && failures_ < few_failures) return Effort::brief;
+    if (!rubs_ && in_a_row_ == 0 && failures_ < few_failures) return Effort::brief;
     return depends_on_path_ ? Effort::patient : Effort::full;
   }
 
