@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -77,9 +78,49 @@ constexpr double deep = 0.8;
 /// frequency, twice in the mean, of 0.9, 1.015 times, of 0.6, 1.001 times.
 constexpr double rate_of_one_sided = 9.0;
 
+/// How a point touches at rest, in its rows; without friction it sticks.
+constexpr double not_at_all = 0.0, sticking = 1.0, slipping = 2.0;
+
+constexpr std::string_view path_of_friction = "friction depends on the path";
+
+/// Two directions of length one at right angles to a third.
+inline std::array<Vector, 2> tangents_of(const Vector& normal) {
+  Vector axis{};
+  axis[std::abs(normal[0]) < 0.6 ? 0 : 1] = 1.0;
+  const Vector t = cross(normal, axis);
+  const Vector first = sum({}, 1.0 / length(t), t);
+  return {first, cross(normal, first)};
+}
+
+/// Adds a spring of contact along a normal, and with friction those along the surface: of the same stiffness
+/// (N/m) if it sticks; if it slips, none along its extension (m), of which friction leaves `most`.
+inline void add_with_friction(Spring spring, double stiffness, const Vector& normal, const Vector& along,
+                              double most, bool slips, double friction, std::vector<Spring>& springs) {
+  const double size = length(along);
+  spring.root = root_of(stiffness, normal);
+  if (slips && size > 0.0) {
+    for (std::size_t i = 0; i < 3; ++i) spring.drag[i] = static_cast<float>(friction / size * along[i]);
+    springs.push_back(spring);
+    spring.drag = {};
+    spring.root = root_of(stiffness * std::min(1.0, most / size), sum({}, 1.0 / size, cross(normal, along)));
+    springs.push_back(spring);
+    return;
+  }
+  springs.push_back(spring);
+  for (const Vector& t : tangents_of(normal)) {
+    spring.root = root_of(stiffness, t);
+    springs.push_back(spring);
+  }
+}
+
+/// Half the square of an extension, m^2: the energy that is lost per stiffness where a spring lets go.
+inline double lost(const Row<double>& stretch) {
+  return 0.5 * (stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2]);
+}
+
 /// Lets friction shorten the extension (m) of a spring along a surface to `most`, from that before. Returns
 /// what it dissipates per stiffness, m^2: the mean of two forces times the slip, as in the time loop.
-inline double slip(Vector& along, double most, const Row<double>& before) {
+inline double slip(Vector& along, double most, const Row<double>& before = {}) {
   const double size = std::sqrt(dot(along, along));
   if (!(size > most)) return 0.0;
   double dissipated = 0.0;
@@ -148,6 +189,13 @@ class ContactForce : public BodyForce {
   /// has a constant force.
   virtual bool augment(bool /*augmented*/, Row<double>* /*memory*/) const { return false; }
 
+  /// Whether its forces in static equilibrium depend on the load levels before.
+  virtual bool remembers_path() const { return false; }
+
+  /// At the end of a load level, in the equilibrium of the last evaluation: from here friction follows the
+  /// next one.
+  virtual void end_level(Factors /*factors*/, NodalRows /*u*/, Row<double>* /*memory*/) const {}
+
   /// Adds the potential (J) with these forces.
   virtual void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,
                                      double& sum) const = 0;
@@ -210,6 +258,11 @@ inline std::vector<const ContactForce*> contacts_of(const BodyForces& forces) {
     if (const auto* contact = dynamic_cast<const ContactForce*>(force.get())) contacts.push_back(contact);
   }
   return contacts;
+}
+
+/// Whether the forces on a body in static equilibrium depend on the load levels before.
+inline bool remember_path(const BodyForces& forces) {
+  return std::ranges::any_of(contacts_of(forces), [](const auto* one) { return one->remembers_path(); });
 }
 
 /// The obstacles among them that a program may move.

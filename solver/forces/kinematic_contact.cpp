@@ -75,10 +75,6 @@ class KinematicContact final : public ObstacleContact {
                    std::vector<Spring>& /*springs*/) const override {}
   std::size_t memory() const override { return ContactMemory::own + own + 2 * nodes_.size(); }
 
-  std::shared_ptr<const BodyForce> at_rest() const override {
-    return make_penalty_contact(nodes_, obstacle_, shape_, curves_, start_);
-  }
-
   void begin_again(const Vector& force, const Vector& moment, Row<double>* rows) const override {
     ContactForce::begin_again(force, moment, rows);
     ContactMemory(rows).others[0] = {};

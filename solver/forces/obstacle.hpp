@@ -69,8 +69,7 @@ struct Obstacle {
                   false},
         Parameter{&O::displacement, "displacement", "m", Range::any(), "how far it moves", false},
         Parameter{&O::curve, "curve", "-", Range::any(), "factor of its displacement over time", false},
-        Parameter{&O::friction, "friction", "-", Range::at_least(0.0),
-                  "Coulomb's coefficient, in motions only", false},
+        Parameter{&O::friction, "friction", "-", Range::at_least(0.0), "Coulomb's coefficient", false},
         Parameter{
             &O::penalty, "penalty", "-", Range::positive(),
             "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of the "

@@ -59,6 +59,8 @@ class ObstacleContact : public ContactForce {
     return touch;
   }
 
+  std::shared_ptr<const BodyForce> at_rest() const override;
+
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const final {
     std::vector<TouchingNode> inside;
     for (TouchingNode one : nodes_) {
@@ -71,6 +73,8 @@ class ObstacleContact : public ContactForce {
  protected:
   /// The same contact of other nodes.
   virtual std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const = 0;
+
+  bool rubs() const { return obstacle_.friction > 0.0; }
 
   Vector displacement(Factors factors) const {
     const Factors moves = factors.subspan(curves_.first_move, 3);
@@ -137,6 +141,16 @@ class ObstacleContact : public ContactForce {
 std::shared_ptr<ObstacleContact> make_penalty_contact(std::vector<TouchingNode> nodes,
                                                       const Obstacle& obstacle, const ObstacleShape& shape,
                                                       const ObstacleCurves& curves, const Vector& start);
+
+/// At rest, by a penalty. Friction is that of a penalty whose nodes remember where they stick from one load
+/// level to the next, not from one evaluation to the next.
+std::shared_ptr<ObstacleContact> make_resting_contact(std::vector<TouchingNode> nodes,
+                                                      const Obstacle& obstacle, const ObstacleShape& shape,
+                                                      const ObstacleCurves& curves, const Vector& start);
+
+inline std::shared_ptr<const BodyForce> ObstacleContact::at_rest() const {
+  return make_resting_contact(nodes_, obstacle_, shape_, curves_, start_);
+}
 
 /// By moving nodes. The velocity that a node would have inside the obstacle is corrected so that it ends the
 /// step on the surface; it is never held there. Friction takes from its motion along the surface at most the

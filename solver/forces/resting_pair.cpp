@@ -15,17 +15,23 @@ constexpr double stiffer_at_rest = 30.0;
 constexpr double just_fits = 1e-6;
 
 std::string_view why_none(const Contact& contact) {
-  if (contact.friction > 0.0) return "friction depends on the path";
   if (contact.other.empty()) return "a surface touches itself in motions only";
-  return "";
+  return contact.friction > 0.0 ? path_of_friction : "";
 }
 
 /// The force of a point that touches a triangle is along its normal, in proportion to the depth behind its
-/// plane: the derivative of an energy, and without moment. Points remember also their triangle, whether their
-/// fixed contact is contrary, their depth and the depth of their constant force, m.
+/// plane: the derivative of an energy, and without moment. Points remember also their triangle, how they
+/// would touch if that were not fixed, and contrary, their depth and the depth of their constant force, m.
+/// With friction also three rows of the last load level: the weights of the point of the other surface from
+/// which they slip; its face and their gap there, m; the extension of their spring along the surface, m.
 class RestingPair final : public SurfacePair {
  public:
-  explicit RestingPair(const SurfacePair& pair, const ForceTraits& traits) : SurfacePair(pair, 2, traits) {}
+  explicit RestingPair(const SurfacePair& pair, const ForceTraits& traits)
+      : SurfacePair(pair, pair.contact().friction > 0.0 ? 5 : 2, traits) {
+    if (rubs()) start_ = undeformed([&](NodalRows u, Row<double>* rows) { note_places(0.0, u, rows); });
+  }
+
+  bool remembers_path() const override { return rubs() && !contact_.other.empty(); }
 
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override {
     const auto inside = SurfacePair::restricted_to(part);
@@ -33,15 +39,19 @@ class RestingPair final : public SurfacePair {
   }
   std::shared_ptr<const BodyForce> at_rest() const override { return nullptr; }
 
-  void add_contact(Factors /*factors*/, NodalRows u, Row<double>* rows,
+  void add_contact(Factors factors, NodalRows u, Row<double>* rows,
                    AtNodes<Row<double>> forces) const override {
     ContactMemory memory(rows);
     memory.pushes = memory.moves = {};
-    for_each_resting(u, memory, 0.0, [&](const Resting& one) {
+    for_each_resting(friction(factors), u, memory, 0.0, [&](const Resting& one) {
       const double depth = -one.plane.gap;
       memory.pushes[3] += 0.5 * one.stiffness * depth * (depth + 2.0 * one.constant);
       memory.moves[3] = std::max(memory.moves[3], depth);
-      const Vector force = sum({}, one.stiffness * (depth + one.constant), one.plane.normal);
+      Vector along = one.along;
+      if (one.slips()) slip(along, one.most);
+      memory.pushes[3] += 0.5 * one.stiffness * dot(along, along);
+      const Vector force =
+          sum(sum({}, one.stiffness * (depth + one.constant), one.plane.normal), -one.stiffness, along);
       for_each_node(one, [&](int node, double weight) {
         for (std::size_t i = 0; i < 3; ++i) forces[node][i] += weight * force[i];
       });
@@ -49,14 +59,16 @@ class RestingPair final : public SurfacePair {
     });
   }
 
-  void add_contact_potential(Factors /*factors*/, NodalRows u, const Row<double>* memory,
+  /// With friction that of a slip under constant pressure.
+  void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,
                              double& sum) const override {
     Rows<double> rows(memory, memory + this->memory());
     fix_contact(false, rows.data());
     ContactMemory copy(rows.data());
-    for_each_resting(u, copy, 0.0, [&](const Resting& one) {
-      const double depth = one.constant - one.plane.gap;
-      sum += 0.5 * one.stiffness * depth * depth;
+    for_each_resting(friction(factors), u, copy, 0.0, [&](const Resting& one) {
+      const double depth = one.constant - one.plane.gap, size = length(one.along),
+                   held = std::min(size, one.most);
+      sum += one.stiffness * (0.5 * depth * depth + held * (size - 0.5 * held));
     });
     for_each_point(copy, [&](const Side& side, std::size_t k, Row<double>* of_point) {
       const double constant = of_point[1][constant_depth];
@@ -64,30 +76,38 @@ class RestingPair final : public SurfacePair {
     });
   }
 
-  void add_springs(Factors /*factors*/, NodalRows u, const Row<double>* memory,
+  void add_springs(Factors factors, NodalRows u, const Row<double>* memory,
                    std::vector<Spring>& springs) const override {
     Rows<double> rows(memory, memory + this->memory());
     ContactMemory copy(rows.data());
-    for_each_resting(u, copy, just_fits * given_.reach, [&](const Resting& one) {
+    const double friction_now = friction(factors);
+    for_each_resting(friction_now, u, copy, just_fits * given_.reach, [&](const Resting& one) {
       Spring spring{{}, {}, 0, root_of(one.stiffness, one.plane.normal)};
       for_each_node(one, [&](int node, double weight) {
         spring.nodes[spring.size] = node;
         spring.weights[spring.size++] = static_cast<float>(weight);
       });
-      springs.push_back(spring);
+      if (!rubs()) return springs.push_back(spring);
+      add_with_friction(spring, one.stiffness, one.plane.normal, one.along, one.most, one.slips(),
+                        friction_now, springs);
     });
   }
 
+  void end_level(Factors factors, NodalRows u, Row<double>* rows) const override {
+    if (rubs()) note_places(friction(factors), u, rows);
+  }
+
   void add_holds(std::vector<Hold>& holds) const override {
-    const Rows<double> undeformed(1);
-    const std::vector<int> first(at(*std::ranges::max_element(nodes())) + 1, 0);
-    Rows<double> rows(memory());
-    ContactMemory memory(rows.data());
-    for_each_resting(
-        NodalRows(undeformed.data(), first), memory, just_fits * given_.reach, [&](const Resting& one) {
-          Hold& hold = holds.emplace_back(Hold{{}, one.plane.normal});
-          for_each_node(one, [&](int node, double weight) { hold.mean_of.push_back({node, weight}); });
-        });
+    undeformed([&](NodalRows u, Row<double>* rows) {
+      ContactMemory memory(rows);
+      for_each_resting(0.0, u, memory, just_fits * given_.reach, [&](const Resting& one) {
+        Hold hold{{}, one.plane.normal};
+        for_each_node(one, [&](int node, double weight) { hold.mean_of.push_back({node, weight}); });
+        holds.push_back(hold);
+        if (!rubs()) return;
+        for (const Vector& t : tangents_of(one.plane.normal)) holds.push_back({hold.mean_of, t});
+      });
+    });
   }
 
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
@@ -102,7 +122,7 @@ class RestingPair final : public SurfacePair {
     bool any = false;
     for_each_point(memory, [&](const Side& /*side*/, std::size_t /*k*/, Row<double>* of_point) {
       if (any || of_point[1][contrary] == 0.0) return;
-      of_point[0][strength] = 1.0 - of_point[0][strength];
+      of_point[0][strength] = of_point[1][contrary] - 1.0;
       of_point[1][contrary] = 0.0;
       any = true;
     });
@@ -125,6 +145,11 @@ class RestingPair final : public SurfacePair {
   /// What points remember in their second row.
   enum OfRestingPoint : std::size_t { triangle = 0, contrary = 1, depth_now = 2, constant_depth = 3 };
 
+  /// With friction in their third to fifth row. Faces count from one; zero: nothing is remembered yet;
+  /// -1: the other surface was far away.
+  enum OfPlace : std::size_t { weights_of_place = 2, place = 3, stretch = 4 };
+  enum OfFace : std::size_t { face_of_place = 0, gap_before = 1 };
+
   /// A point that touches.
   struct Resting {
     const Side* side;
@@ -133,7 +158,83 @@ class RestingPair final : public SurfacePair {
     MovingSurface::Plane plane;
     double stiffness;  // N/m
     double constant;   // depth, m
+    double touches;    // how
+    Vector x;          // m
+    Vector along;      // extension of its spring along the surface before it slips, m
+    double most;       // and what friction leaves of it, m
+
+    bool slips() const { return touches == slipping; }
   };
+
+  bool rubs() const { return contact_.friction > 0.0; }
+
+  /// The rows after use(u, rows) at no displacements.
+  template <class Use>
+  Rows<double> undeformed(const Use& use) const {
+    const Rows<double> none(1);
+    const std::vector<int> first(at(*std::ranges::max_element(nodes())) + 1, 0);
+    Rows<double> rows(memory());
+    use(NodalRows(none.data(), first), rows.data());
+    return rows;
+  }
+
+  /// With friction, points begin at their places in the undeformed body.
+  void begin(ContactMemory& memory) const {
+    if (start_.empty() || of_point(memory, sides_.front(), 0)[place][face_of_place] != 0.0) return;
+    Rows<double> rows = start_;
+    ContactMemory start(rows.data());
+    for_each_point(memory, [&](const Side& side, std::size_t k, Row<double>* one) {
+      std::copy_n(of_point(start, side, k) + weights_of_place, 3, one + weights_of_place);
+    });
+  }
+
+  /// The extension (m) along the surface of the spring of a point at x (m) that touches: its way relative to
+  /// the other surface since the last load level, or since they met if it was outside.
+  Vector extension(const Side& side, const Vector& x, const MovingSurface::Plane& plane,
+                   const Row<double>* of_point, const Row<double>* of_onto) const {
+    if (!rubs()) return {};
+    const auto face = static_cast<int>(of_point[place][face_of_place]) - 1;
+    if (face < 0) return {};
+    const MovingSurface& onto = surfaces_[side.onto];
+    const Vector from = MovingSurface::position(onto.corners(face), of_point[weights_of_place], of_onto),
+                 way = difference(x, from);
+    const double before = of_point[place][gap_before];
+    const double share = before > 0.0 ? std::clamp(plane.gap / (plane.gap - before), 0.0, 1.0) : 1.0;
+    return sum({}, share, sum(way, -dot(way, plane.normal), plane.normal));
+  }
+
+  /// Remembers the place of each point on the other surface from which it slips in the next load level.
+  void note_places(double friction_now, NodalRows u, Row<double>* rows) const {
+    ContactMemory memory(rows);
+    for_each_resting(friction_now, u, memory, 0.0, [&](const Resting& one) {
+      Row<double>* of_point = this->of_point(memory, *one.side, one.k);
+      Vector along = one.along;
+      memory.sums[0] += one.stiffness * slip(along, one.most, of_point[stretch]);
+      const Row<double>* of_onto = of_surface(memory, one.side->onto);
+      const auto plane = surfaces_[one.side->onto].plane_at(
+          one.face, static_cast<std::size_t>(of_point[1][triangle]), difference(one.x, along), of_onto);
+      of_point[weights_of_place] = plane.weights;
+      of_point[place] = {{1.0 + one.face, 0.0, 0.0, 0.0}};
+      of_point[stretch] = {{along[0], along[1], along[2], 0.0}};
+    });
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) surfaces_[s].fit(of_surface(memory, s));
+    for_each_point(memory, [&](const Side& side, std::size_t k, Row<double>* of_point) {
+      if (of_point[0][strength] != not_at_all) return;
+      const MovingSurface &from = surfaces_[side.from], &onto = surfaces_[side.onto];
+      const Row<double>*of_from = of_surface(memory, side.from), *of_onto = of_surface(memory, side.onto);
+      const SurfacePoint& point = from.points()[k];
+      const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
+      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), given_.reach,
+                                            side.neighbours[k], of_onto);
+      memory.sums[0] += stiffness_of(side, k) * lost(of_point[stretch]);
+      of_point[stretch] = {};
+      of_point[place] = {{-1.0, 0.0, 0.0, 0.0}};
+      if (foot.face < 0) return;
+      const auto plane = onto.plane_at(foot.face, foot.triangle, x, of_onto);
+      of_point[weights_of_place] = plane.weights;
+      of_point[place] = {{1.0 + foot.face, plane.gap, 0.0, 0.0}};
+    });
+  }
 
   double stiffness_of(const Side& side, std::size_t k) const {
     return 0.5 * stiffer_at_rest * given_.stiffness * surfaces_[side.from].points()[k].area;
@@ -163,7 +264,9 @@ class RestingPair final : public SurfacePair {
   /// Calls use(resting) for all points that touch at displacements u (m), or whose contact is fixed. Points
   /// up to a margin (m) outside touch, too.
   template <class Use>
-  void for_each_resting(NodalRows u, ContactMemory& memory, double margin, const Use& use) const {
+  void for_each_resting(double friction_now, NodalRows u, ContactMemory& memory, double margin,
+                        const Use& use) const {
+    begin(memory);
     const double range = std::max(given_.reach, move(u, memory).largest_relative()),
                  way = memory.others[0][way_so_far];
     const bool fixed = memory.sums[3] != 0.0;
@@ -177,7 +280,7 @@ class RestingPair final : public SurfacePair {
       const double constant = of_point[1][constant_depth], farthest = constant + margin;
       const SurfacePoint& point = from.points()[k];
       const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
-      MovingSurface::Plane plane;
+      MovingSurface::Plane plane{};
       auto face = static_cast<int>(of_point[0][touched_face]);
       auto of_face = static_cast<std::size_t>(of_point[1][triangle]);
       if (touched) plane = onto.plane_at(face, of_face, x, of_onto);
@@ -201,19 +304,26 @@ class RestingPair final : public SurfacePair {
           }
         }
       }
-      const bool touches = fixed ? touched : inside, is_contrary = touches != inside || (fixed && moved);
-      of_point[1][contrary] = is_contrary ? 1.0 : 0.0;
-      if (is_contrary) ++memory.sums[2];
-      of_point[0][strength] = touches ? 1.0 : 0.0;
+      Vector along{};
+      if (inside || touched) along = extension(side, x, plane, of_point, of_onto);
+      const double most = friction_now * std::max(constant - plane.gap, 0.0);
+      const double free = !inside ? not_at_all : rubs() && length(along) > most ? slipping : sticking;
+      const double touches = fixed ? of_point[0][strength] : free;
+      const bool jumped = fixed && moved;
+      of_point[1][contrary] = touches != free ? 1.0 + free : jumped ? 1.0 + not_at_all : 0.0;
+      if (of_point[1][contrary] != 0.0) ++memory.sums[2];
+      of_point[0][strength] = touches;
       if (face >= 0) {  // correct_contact may attach it
         of_point[0][touched_face] = face;
         of_point[1][triangle] = static_cast<double>(of_face);
       }
-      if (!touches) return;
+      if (touches == not_at_all) return;
       of_point[1][depth_now] = -plane.gap;
-      use(Resting{&side, k, face, plane, stiffness_of(side, k), constant});
+      use(Resting{&side, k, face, plane, stiffness_of(side, k), constant, touches, x, along, most});
     });
   }
+
+  Rows<double> start_;  // with friction the rows of the undeformed body
 };
 
 }  // namespace

@@ -11,12 +11,14 @@
 namespace sandglass {
 
 /// A spring of contact between at most eight nodes. Its extension is the sum of their displacements, times
-/// weights, along its direction. A spring of one node holds it to the ground.
+/// weights, along its direction. A spring of one node holds it to the ground. With friction its force is not
+/// along its direction n, but along n - s, s its drag.
 struct Spring {
   std::array<int, 8> nodes;  ///< of the mesh, or rows
   std::array<float, 8> weights;
   std::size_t size;
-  Row<float> root;  ///< its direction, of length one, times the root of its stiffness, root of N/m
+  Row<float> root;       ///< its direction, of length one, times the root of its stiffness, root of N/m
+  Row<float> drag = {};  ///< the coefficient of friction times the direction of slip, at right angles to root
 
   /// Its extension under displacements (m) at `nodes`, times the root of its stiffness, root of J.
   float extension(const Rows<float>& u) const {
@@ -42,7 +44,7 @@ inline Rows<float> rows_of(const std::vector<Spring>& springs, std::size_t most)
   for (std::size_t k = 0; k < springs.size(); ++k) {
     const Spring& spring = springs[k];
     rows[6 * k] = spring.root;
-    rows[6 * k + 1][0] = static_cast<float>(spring.size);
+    rows[6 * k + 1] = {{static_cast<float>(spring.size), spring.drag[0], spring.drag[1], spring.drag[2]}};
     for (std::size_t n = 0; n < spring.size; ++n) {
       Row<float>& row = rows[6 * k + 2 + n / 2];
       row[n % 2] = static_cast<float>(spring.nodes[n]);  // exact below 2^24
@@ -56,7 +58,12 @@ inline Rows<float> rows_of(const std::vector<Spring>& springs, std::size_t most)
 inline std::vector<Spring> springs_of(const Rows<float>& rows) {
   std::vector<Spring> springs;
   for (std::size_t k = 0; 6 * k < rows.size() && rows[6 * k + 1][0] > 0.0f; ++k) {
-    Spring spring{{}, {}, static_cast<std::size_t>(rows[6 * k + 1][0]), rows[6 * k]};
+    const Row<float>& of_spring = rows[6 * k + 1];
+    Spring spring{{},
+                  {},
+                  static_cast<std::size_t>(of_spring[0]),
+                  rows[6 * k],
+                  {{of_spring[1], of_spring[2], of_spring[3]}}};
     for (std::size_t n = 0; n < spring.size; ++n) {
       const Row<float>& row = rows[6 * k + 2 + n / 2];
       spring.nodes[n] = static_cast<int>(row[n % 2]);

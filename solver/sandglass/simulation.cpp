@@ -75,6 +75,11 @@ class Simulation<Real>::Parts {
 
   long settle() {
     const Scene present = with_load(scene(), to_, time(), factor_to_);
+    if (remember_path(present.forces)) {
+      throw InputError(
+          "settle: friction depends on the path so far, which is not searched again; allowed: "
+          "contact without friction, or a damped motion");
+    }
     const Model at_present(present, model().choice());
     LastFrame observer;
     const Relaxation answer = relax(at_present, observer);

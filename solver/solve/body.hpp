@@ -127,6 +127,9 @@ class Body {
   /// See Loads::augment_contact.
   bool augment_contact(bool augmented) { return loads_.augment_contact(augmented); }
 
+  /// See Loads::end_level.
+  void end_level() { loads_.end_level(state_.u); }
+
   /// See Loads::correct_contact.
   void correct_contact() { loads_.correct_contact(); }
 

@@ -83,6 +83,7 @@ void Equilibrium<Real>::take_own_pressures() {
 template <class Real>
 void Equilibrium<Real>::begin() {
   mixed_.linearize();
+  mixed_.set_drags();
   mixed_.weigh();
 }
 
@@ -171,12 +172,13 @@ void Equilibrium<Real>::update_contact() {
   mixed_.evaluate();
   if (stage_ != Stage::acceleration) return;
   body().fix_contact(true);
+  mixed_.linearize_contact();
+  mixed_.set_drags();
   contact_.norm = mixed_.norm();
   contact_.steps = 0;
   if (++contact_.updates > most_updates) return;
   progress_ = {contact_.norm};
   acceleration_.clear();
-  mixed_.linearize_contact();
 }
 
 /// Moves to where the steps so far predict the smallest residual, and on by a multigrid cycle; shorter while

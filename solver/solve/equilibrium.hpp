@@ -13,6 +13,12 @@ namespace sandglass {
 /// When a search gives up if its steps fail: immediately, after a while, or only after all stages.
 enum class Effort { brief, patient, full };
 
+/// Whether forces depend on the load levels before: those of elements, or friction.
+template <class Real>
+bool depends_on_path(const Model& model, const InternalForce<Real>& elements) {
+  return elements.needs_increment() || remember_path(model.scene().forces);
+}
+
 /// The search for the equilibrium of a body at fixed loads and imposed displacements, in up to three stages:
 /// accelerated steps, each a multigrid cycle and one evaluation of the forces; if they fail, the method of
 /// multipliers; if that is no better, descent of the body's own potential. See README.md.
@@ -21,7 +27,9 @@ class Equilibrium {
  public:
   /// For the undeformed body of the model; `start` must follow.
   Equilibrium(const Model& model, const InternalForce<Real>& elements)
-      : mixed_(model, elements), acceleration_(blocks()), depends_on_path_(elements.needs_increment()) {}
+      : mixed_(model, elements),
+        acceleration_(blocks()),
+        depends_on_path_(depends_on_path(model, elements)) {}
 
   /// The body, with the forces and displacements of the last evaluation. Callers that move it must set its
   /// increment.

@@ -18,6 +18,8 @@ double rms_distance(const NodalField& a, const NodalField& b) {
 ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
   constexpr double share_left = 0.01;
   const Scene& scene = model.scene();
+  if (remember_path(scene.forces))
+    throw ComputationError("friction depends on the path, which the answer does not show: no estimate");
   const Model exact(scene, {.method = std::string(estimate_method),
                             .threads = model.choice().threads,
                             .ranks = model.choice().ranks});

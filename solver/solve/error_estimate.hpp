@@ -20,7 +20,7 @@ struct ErrorEstimate {
 /// The estimate for a quasi-static answer u (m) of any method. The mean-dilatation element is relaxed from
 /// there until its residual, at first the difference between the two methods' forces, has fallen to a
 /// hundredth; the remaining residual displaces nodes by about the same share of the estimate. Throws
-/// ComputationError if an element is inverted at u or the search fails.
+/// ComputationError if an element is inverted at u, if the search fails, or with friction.
 ErrorEstimate estimate_error(const Model& model, const NodalField& u);
 
 }  // namespace sandglass

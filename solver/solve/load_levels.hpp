@@ -81,6 +81,7 @@ class LoadLevels {
       : model_(model),
         chosen_(model.scene().settings.relaxation.levels),
         depends_on_path_(forces_depend_on_path),
+        rubs_(remember_path(model.scene().forces)),
         equal_(chosen_ > 0 || forces_depend_on_path),
         turns_(turning_loads(model.scene().settings.relaxation.cycles)),
         longest_(longest_increment(model.scene())),
@@ -106,9 +107,10 @@ class LoadLevels {
   bool full() const { return leg_ + 1 == turns_.size() && load_ == turns_.back(); }
 
   /// The effort for this level: brief, unless shorter increments have not helped. Forces that depend on the
-  /// path have no potential, so that only patience can help.
+  /// path have no potential, so that only patience can help; with friction it helps more than shorter
+  /// increments.
   Effort effort() const {
-    if (in_a_row_ == 0 && failures_ < few_failures) return Effort::brief;
+    if (!rubs_ && in_a_row_ == 0 && failures_ < few_failures) return Effort::brief;
     return depends_on_path_ ? Effort::patient : Effort::full;
   }
 
@@ -172,10 +174,12 @@ class LoadLevels {
   }
 
   /// Whether a search below the full load is accurate enough for predictions. Forces that depend on the path
-  /// remember every level, and the first of equal levels determines their number. After many failures, a
+  /// remember every level, friction more than a residual of 0.1, and the first of equal levels determines
+  /// their number. After many failures, a
   /// level that is farther from equilibrium than the increment of the load would mislead the next one.
   bool far_enough(const Equilibrium<Real>& search) const {
     constexpr double residual = 0.1, reduction = 0.03, residual_of_first = 1e-3;
+    if (rubs_) return search.residual() < residual_of_first && search.contact_agrees();
     if (equal_ && last_.load == 0.0) return search.residual() < residual_of_first;
     if (failures_ >= few_failures) {
       const double load = std::max(std::abs(load_), std::abs(last_.load));
@@ -298,6 +302,7 @@ class LoadLevels {
   const Model& model_;
   int chosen_;
   bool depends_on_path_;
+  bool rubs_;  // whether there is friction
   bool equal_;
   std::vector<double> turns_;
   double longest_;

@@ -175,10 +175,11 @@ Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Re
   for (const auto* load : loads_) {
     if (load->traits().drives) load->add_forces(changes, motion, by_node(sums.data()));
   }
-  Rows<double> before(touching_.size());
-  for (const ContactForce* contact : contacts_) {
-    contact->add_forces(factors, motion, by_node(sums.data()));
-    contact->add_forces(factors_, motion, by_node(before.data()));
+  Rows<double> before(touching_.size()), memory = memory_;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Row<double>* rows = memory.data() + memory_of_[c];
+    contacts_[c]->add_contact(factors_, motion.u, rows, by_node(before.data()));
+    contacts_[c]->add_contact(factors, motion.u, rows, by_node(sums.data()));
   }
   for (std::size_t k = 0; k < before.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) sums[k][i] -= before[k][i];
@@ -226,6 +227,13 @@ bool Loads<Real>::augment_contact(bool augmented) {
   for (std::size_t c = 0; c < contacts_.size(); ++c)
     any = contacts_[c]->augment(augmented, memory_.data() + memory_of_[c]) || any;
   return any;
+}
+
+template <class Real>
+void Loads<Real>::end_level(const Rows<Real>& u) {
+  const Rows<double> there = loaded(u);
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->end_level(factors_, by_node(there.data()), memory_.data() + memory_of_[c]);
 }
 
 template <class Real>

@@ -59,6 +59,9 @@ class Loads {
   /// See ContactForce::augment; of all obstacles.
   bool augment_contact(bool augmented);
 
+  /// See ContactForce::end_level; at displacements u (m).
+  void end_level(const Rows<Real>& u);
+
   /// Changes one node of all obstacles; see ContactForce::correct_contact.
   void correct_contact();
 

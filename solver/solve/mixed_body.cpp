@@ -108,6 +108,13 @@ void MixedBody<Real>::linearize_contact() {
 }
 
 template <class Real>
+void MixedBody<Real>::set_drags() {
+  const bool dragged = !drags_.empty();
+  drags_ = drags_of(contact_, free_);
+  if (dragged || !drags_.empty()) compare();
+}
+
+template <class Real>
 void MixedBody<Real>::linearize(double penalty) {
   Rows<float> u = linear_ ? Rows<float>(free_.size()) : rounded_rows<float>(body_.state().u);
   if (penalty == linearized_penalty_) {
@@ -220,6 +227,7 @@ void MixedBody<Real>::compare() {
 #pragma omp simd
     for (std::size_t k = first; k < last; ++k) r[k] = static_cast<float>(f[k] + free[k] * g[k]);
   });
+  replace_drags(drags_, residuals_.u);
   for_each_element([&](std::size_t e, std::size_t c) { residuals_.p[c] = static_cast<float>(defect_[e]); });
   weigh(residuals_);
 }

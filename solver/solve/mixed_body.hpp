@@ -5,6 +5,7 @@
 
 #include "multigrid/saddle_multigrid.hpp"
 #include "solve/body.hpp"
+#include "solve/drag.hpp"
 #include "solve/residual_weights.hpp"
 
 namespace sandglass {
@@ -46,6 +47,9 @@ class MixedBody {
 
   /// Adapts it only to the nodes that touch obstacles now, unless they are the same as the last time.
   void linearize_contact();
+
+  /// Lets residuals replace the drags of the nodes that slip now; see drag.hpp.
+  void set_drags();
 
   /// The same with the resistance to volume changes of multipliers with this penalty.
   void linearize(double penalty);
@@ -214,6 +218,7 @@ class MixedBody {
   Rows<Real> before_, slid_;                   // displacements before and after nodes slide along obstacles
   std::size_t most_springs_;                   // of contact
   std::vector<Spring> contact_, contact_now_;  // linearized and present
+  std::vector<Drag> drags_;                    // in residuals
   bool linearized_ = false;                    // whether the multigrid method belongs to these two
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p

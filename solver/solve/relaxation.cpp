@@ -38,7 +38,7 @@ class Search {
         observer_(observer),
         equilibrium_(model, elements),
         adaption_(model, equilibrium_.body()),
-        load_levels_(model, equilibrium_.body(), elements.needs_increment()),
+        load_levels_(model, equilibrium_.body(), depends_on_path(model, elements)),
         touches_(equilibrium_.may_touch()),
         no_velocity_(model.masses().size()),
         reactions_(model.scene().constraints.size(), 0.0),
@@ -305,6 +305,7 @@ class Search {
   void finish_load_level() {
     result_.converged = load_levels_.full() && !result_.stagnated;
     ended_ = load_levels_.full() || equilibrium_.evaluations() >= most_evaluations_;
+    body().end_level();
     add_work();
     report();
     if (ended_) return;
@@ -332,9 +333,10 @@ class Search {
       throw ComputationError(fmt::format("{}; {}", error.what(), where), error.breakdown());
     }
     throw ComputationError(
-        fmt::format("no equilibrium found even with tiny increments of the load; {}; remedy: impose less, "
-                    "or refine the mesh",
-                    where),
+        fmt::format("no static equilibrium found even with tiny increments of the load; {}{}; remedy: impose "
+                    "less, or refine the mesh",
+                    where,
+                    remember_path(model_.scene().forces) ? "; a body that slips everywhere has none" : ""),
         Breakdown::no_balance);
   }
 
@@ -412,7 +414,7 @@ Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from,
   const auto contacts = contacts_of(model.scene().forces);
   for (const ContactForce* contact : contacts) {
     const std::string_view reason = contact->traits().no_potential;
-    if (reason.empty()) continue;
+    if (reason.empty() || contact->remembers_path()) continue;
     throw InputError(
         fmt::format("{}: [[{}]] has no static equilibrium: {}; allowed: a dynamic case, or leave that out",
                     model.scene().settings.file.string(), contact->traits().name, reason));
@@ -429,7 +431,7 @@ Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from,
                           ? condensed_answer(model, observer)
                           : std::visit(
                                 [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
-                                  if (near != nullptr && !elements->needs_increment()) {
+                                  if (near != nullptr && !depends_on_path(model, *elements)) {
                                     auto found = Search<Real>(model, *elements, observer).run_near(*near);
                                     if (found) return std::move(*found);
                                   }

@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <cmath>
+
+#include "forces/obstacle_contact.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// It keeps a row for each node: how it would touch if that were not fixed, and contrary; its depth and the
+/// depth of its constant force, m; how it touches. With friction also two rows of the last load level: from
+/// where the node slips, in the frame of the obstacle and relative to the undeformed body, m; the extension
+/// of its spring along the obstacle, m.
+class RestingContact final : public ObstacleContact {
+ public:
+  using ObstacleContact::ObstacleContact;
+
+  std::shared_ptr<const BodyForce> at_rest() const override { return nullptr; }
+  bool remembers_path() const override { return rubs(); }
+
+  void add_contact(Factors factors, NodalRows u, Row<double>* rows,
+                   AtNodes<Row<double>> forces) const override {
+    ContactMemory memory(rows);
+    const Vector moved = displacement(factors);
+    memory.clear_forces();
+    memory.moves = {{moved[0], moved[1], moved[2], 0.0}};
+    memory.sums[2] = 0.0;
+    const bool fixed = is_fixed(rows);
+    const double deepest = deep * half_thickness();
+    for_each_gap(moved, u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+      const auto& [node, X, stiffness] = nodes_[k];
+      Row<double>* of_node = memory.others + by_node() * k;
+      const double constant = of_node[0][2], depth = -gap.distance;
+      Vector along = rubs() ? extension(k, x, gap, of_node) : Vector{};
+      const double most = most_extension(gap, of_node), size = length(along);
+      const double free = depth <= -constant ? not_at_all : size > most ? slipping : sticking;
+      const double touches = fixed ? of_node[0][3] : free;
+      if (touches != free) ++memory.sums[2];
+      of_node[0] = {{touches != free ? 1.0 + free : 0.0, depth, constant, touches}};
+      if (touches == not_at_all) return;
+      if (depth > deepest) memory.note_passed(node);
+      memory.pushes[3] += 0.5 * stiffness * depth * (depth + 2.0 * constant);
+      memory.moves[3] = std::max(memory.moves[3], depth);
+      Vector force = sum({}, stiffness * (depth + constant), gap.normal);
+      if (touches == slipping && size > 0.0) along = sum({}, most / size, along);
+      memory.pushes[3] += 0.5 * stiffness * dot(along, along);
+      force = sum(force, -stiffness, along);
+      for (std::size_t i = 0; i < 3; ++i) forces[node][i] += force[i];
+      memory.add_force(force, difference(x, obstacle_.point));
+    });
+  }
+
+  /// With friction that of a slip under constant pressure.
+  void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,
+                             double& sum) const override {
+    for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+      const Row<double>* of_node = memory + ContactMemory::own + by_node() * k;
+      const double constant = of_node[0][2], depth = std::max(constant - gap.distance, 0.0);
+      sum += 0.5 * nodes_[k].stiffness * (depth * depth - constant * constant);
+      if (!rubs() || depth == 0.0) return;
+      const double size = length(extension(k, x, gap, of_node)),
+                   held = std::min(size, most_extension(gap, of_node));
+      sum += nodes_[k].stiffness * held * (size - 0.5 * held);
+    });
+  }
+
+  void end_level(Factors factors, NodalRows u, Row<double>* rows) const override {
+    if (!rubs()) return;
+    ContactMemory memory(rows);
+    for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+      Row<double>* of_node = memory.others + by_node() * k;
+      Row<double>&from = of_node[1], &stretch = of_node[2];
+      Vector along{};
+      if (of_node[0][3] != 0.0) {
+        along = extension(k, x, gap, of_node);
+        memory.sums[0] += nodes_[k].stiffness * slip(along, most_extension(gap, of_node), stretch);
+      } else {
+        memory.sums[0] += nodes_[k].stiffness * lost(stretch);
+      }
+      const Vector place = difference(difference(x, along), undeformed(k));
+      from = {{place[0], place[1], place[2], 0.0}};
+      stretch = {{along[0], along[1], along[2], 0.0}};
+    });
+  }
+
+  bool augment(bool augmented, Row<double>* memory) const override {
+    bool any = false;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      Row<double>& of_node = ContactMemory(memory).others[by_node() * k];
+      of_node[2] = augmented && of_node[3] != 0.0 ? std::max(of_node[1] + of_node[2], 0.0) : 0.0;
+      any = any || of_node[2] > 0.0;
+    }
+    return any;
+  }
+
+  void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
+                 std::vector<LoadRates>& /*rates*/) const override {}
+
+  void fix_contact(bool fixed, Row<double>* memory) const override {
+    ContactMemory(memory).sums[3] = fixed ? 1.0 : 0.0;
+  }
+
+  bool correct_contact(Row<double>* memory) const override {
+    Row<double>* others = ContactMemory(memory).others;
+    for (std::size_t k = nodes_.size(); k-- > 0;) {
+      Row<double>& of_node = others[by_node() * k];
+      if (of_node[0] == 0.0) continue;
+      of_node = {{0.0, of_node[1], of_node[2], of_node[0] - 1.0}};
+      return true;
+    }
+    return false;
+  }
+
+  void slide(Factors factors, NodalRows before, const Row<double>* memory,
+             AtNodes<Row<double>> u) const override {
+    const Vector moved = displacement(factors);
+    for_each_gap(moved, before, [&](std::size_t k, const Vector& from, const Gap& gap) {
+      if (!touches(k, gap, memory)) return;
+      const auto& [node, X, stiffness] = nodes_[k];
+      Vector x = X;
+      for (std::size_t i = 0; i < 3; ++i) x[i] += u[node][i] - moved[i];
+      const Gap there = gap_at(x);
+      const double up = gap.distance + dot(gap.normal, difference(x, from)) - there.distance;
+      for (std::size_t i = 0; i < 3; ++i) u[node][i] += up * there.normal[i];
+    });
+  }
+
+  void add_springs(Factors factors, NodalRows u, const Row<double>* memory,
+                   std::vector<Spring>& springs) const override {
+    for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+      if (!touches(k, gap, memory)) return;
+      const double stiffness = nodes_[k].stiffness;
+      Spring spring{{nodes_[k].node}, {1.0f}, 1, root_of(stiffness, gap.normal)};
+      if (!rubs()) return springs.push_back(spring);
+      const Row<double>* of_node = memory + ContactMemory::own + by_node() * k;
+      const Vector along = extension(k, x, gap, of_node);
+      const double most = most_extension(gap, of_node);
+      const bool slips = is_fixed(memory) ? of_node[0][3] == slipping : length(along) > most;
+      add_with_friction(spring, stiffness, gap.normal, along, most, slips, obstacle_.friction, springs);
+    });
+  }
+
+  std::size_t memory() const override { return ContactMemory::own + by_node() * nodes_.size(); }
+
+  /// Holds nodes that touch it at the start: a load may pull them away, but then no equilibrium is found.
+  void add_holds(std::vector<Hold>& holds) const override {
+    const Rows<double> undeformed(nodes_.size());
+    std::vector<int> places;
+    for (const TouchingNode& one : nodes_) places.resize(std::max(places.size(), at(one.node) + 1), 0);
+    for_each_gap(start_, NodalRows(undeformed.data(), places),
+                 [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
+                   if (gap.distance > 0.0) return;
+                   holds.push_back({{{nodes_[k].node, 1.0}}, gap.normal});
+                   if (!rubs()) return;
+                   for (const Vector& t : tangents_of(gap.normal))
+                     holds.push_back({{{nodes_[k].node, 1.0}}, t});
+                 });
+  }
+
+ private:
+  std::size_t by_node() const { return rubs() ? 3 : 1; }
+
+  /// Whether a node is linearized as touching: unless it is fixed, also where body and obstacle just fit.
+  bool touches(std::size_t k, const Gap& gap, const Row<double>* memory) const {
+    const Row<double>* of_node = memory + ContactMemory::own + by_node() * k;
+    return is_fixed(memory) ? of_node[0][3] != 0.0 : gap.distance <= of_node[0][2] + rounding_;
+  }
+
+  static bool is_fixed(const Row<double>* memory) { return memory[2][3] != 0.0; }
+
+  std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
+    return make_resting_contact(std::move(nodes), obstacle_, shape_, curves_, start_);
+  }
+
+  /// Where a node of the undeformed body was in the frame of the obstacle, m.
+  Vector undeformed(std::size_t k) const { return difference(nodes_[k].X, start_); }
+
+  /// The extension (m) along the surface of the spring of a node, before it slips: its way since the last
+  /// load level, or since it met the surface if it was outside.
+  Vector extension(std::size_t k, const Vector& x, const Gap& gap, const Row<double>* of_node) const {
+    const Row<double>& from = of_node[1];
+    const Vector place = sum(undeformed(k), 1.0, {from[0], from[1], from[2]});
+    const Vector way = difference(x, place);
+    const double before = gap_at(place).distance;
+    const double share = before > 0.0 ? std::clamp(gap.distance / (gap.distance - before), 0.0, 1.0) : 1.0;
+    return sum({}, share, sum(way, -dot(way, gap.normal), gap.normal));
+  }
+
+  /// The largest extension (m) that friction allows.
+  double most_extension(const Gap& gap, const Row<double>* of_node) const {
+    return obstacle_.friction * std::max(of_node[0][2] - gap.distance, 0.0);
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<ObstacleContact> make_resting_contact(std::vector<TouchingNode> nodes,
+                                                      const Obstacle& obstacle, const ObstacleShape& shape,
+                                                      const ObstacleCurves& curves, const Vector& start) {
+  const bool rubs = obstacle.friction > 0.0;
+  return std::make_shared<RestingContact>(
+      std::move(nodes), obstacle, shape, curves, start,
+      ForceTraits{Obstacle::name, false, rubs, rubs ? path_of_friction : ""});
+}
+
+}  // namespace sandglass
