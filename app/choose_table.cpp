@@ -68,8 +68,9 @@ std::string meshes_text(const Choice& choice) {
   }
   const MeshSource& source = choice.meshes.front().problem.description.mesh;
   if (!std::holds_alternative<AnyGenerator>(source)) {
-    text += fmt::format("the mesh {}: no coarser one was tried\n",
-                        std::holds_alternative<MeshFile>(source) ? "comes from a file" : "has several bodies");
+    text +=
+        fmt::format("the mesh {}: no coarser one was tried\n",
+                    std::holds_alternative<MeshFile>(source) ? "comes from a file" : "has several bodies");
   }
   return text;
 }

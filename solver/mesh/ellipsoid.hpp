@@ -34,10 +34,11 @@ struct EllipsoidMesh {
                   "size of the core in the unit ball", false},
         Parameter{&M::core_bulge, "core_bulge", "-", Range::at_least(0.0),
                   "share of the ball in the core's shape, in addition to half of the cube", false},
-        Parameter{&M::focus, "focus", "-", Range::between(-1.0, 1.0),
-                  "where in the unit ball its centre is moved to, f from it: elements next to it are smaller, on "
-                  "the surface by (1 - f) / (1 + f), and far from it larger",
-                  false}};
+        Parameter{
+            &M::focus, "focus", "-", Range::between(-1.0, 1.0),
+            "where in the unit ball its centre is moved to, f from it: elements next to it are smaller, on "
+            "the surface by (1 - f) / (1 + f), and far from it larger",
+            false}};
   }
   std::optional<BrokenRule> broken_rule() const;
 
