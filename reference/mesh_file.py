@@ -157,7 +157,10 @@ def load_case_mesh(case, mesh_path):
         Attached(_mask(file, _members(mesh_path, file, "mass", one.set_name)), one.total)
         for one in case.masses
     )
-    return dataclasses.replace(mesh, **loads, touching=touching, masses=masses, contacts=contacts), file
+    return (
+        dataclasses.replace(mesh, **loads, touching=touching, masses=masses, contacts=contacts),
+        file,
+    )
 
 
 def initial_velocity(case, mesh_path):

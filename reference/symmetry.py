@@ -71,10 +71,18 @@ def part_bodies(mesh):
     links.resize(len(mesh.points), len(mesh.points))
     count, body = scipy.sparse.csgraph.connected_components(links, directed=False)
     plain = {"points", "cells", "conditions", "materials", "contacts"}
-    if count != 2 or len(mesh.contacts) > 1 or any(
-        getattr(mesh, one.name) not in (None, ()) for one in fields(mesh) if one.name not in plain
+    if (
+        count != 2
+        or len(mesh.contacts) > 1
+        or any(
+            getattr(mesh, one.name) not in (None, ())
+            for one in fields(mesh)
+            if one.name not in plain
+        )
     ):
-        raise InputError(f"{_NO_IMAGES}, here {count} parts, without other loads than displacements")
+        raise InputError(
+            f"{_NO_IMAGES}, here {count} parts, without other loads than displacements"
+        )
     for axis in range(3):
         half = _one_body(mesh, axis, body)
         if half is not None:

@@ -25,13 +25,15 @@ std::string_view why_none(const Contact& contact) {
 /// fixed contact is contrary, their depth and the depth of their constant force, m.
 class RestingPair final : public SurfacePair {
  public:
-  explicit RestingPair(const SurfacePair& pair, const ForceTraits& traits) : SurfacePair(pair, 2, traits) {}
+  RestingPair(std::shared_ptr<const SurfacePair> moving, const ForceTraits& traits)
+      : SurfacePair(*moving, 2, traits), moving_(std::move(moving)) {}
 
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override {
-    const auto inside = SurfacePair::restricted_to(part);
-    return inside ? make_resting_pair(static_cast<const SurfacePair&>(*inside)) : nullptr;
+    const auto inside = std::static_pointer_cast<const SurfacePair>(moving_->restricted_to(part));
+    return inside ? make_resting_pair(inside) : nullptr;
   }
   std::shared_ptr<const BodyForce> at_rest() const override { return nullptr; }
+  std::shared_ptr<const BodyForce> in_motion() const override { return moving_; }
 
   void add_contact(Factors /*factors*/, NodalRows u, Row<double>* rows,
                    AtNodes<Row<double>> forces) const override {
@@ -214,14 +216,16 @@ class RestingPair final : public SurfacePair {
       use(Resting{&side, k, face, plane, stiffness_of(side, k), constant});
     });
   }
+
+  const std::shared_ptr<const SurfacePair> moving_;
 };
 
 }  // namespace
 
-std::shared_ptr<const BodyForce> make_resting_pair(const SurfacePair& pair) {
-  const Contact& contact = pair.contact();
-  return std::make_shared<RestingPair>(
-      pair, ForceTraits{Contact::name, false, contact.friction > 0.0, why_none(contact)});
+std::shared_ptr<const BodyForce> make_resting_pair(std::shared_ptr<const SurfacePair> pair) {
+  const Contact& contact = pair->contact();
+  const ForceTraits traits{Contact::name, false, contact.friction > 0.0, why_none(contact)};
+  return std::make_shared<RestingPair>(std::move(pair), traits);
 }
 
 }  // namespace sandglass
