@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "io/case_file.hpp"
 #include "sandglass/simulation.hpp"
+#include "solve/central_difference.hpp"
 #include "solve/health.hpp"
 #include "support/pressed.hpp"
 #include "support/static_answer.hpp"
@@ -215,6 +216,24 @@ TEST(RestingPair, settles_a_motion) {
   EXPECT_NEAR(simulation.reaction("pair")[2], F, 1e-6 * std::abs(F));
   simulation.advance(0.1);
   EXPECT_NEAR(simulation.reaction("pair")[2], F, 1e-3 * std::abs(F));
+}
+
+/// The motion of a static case has the contact of motions, whose stable step is the bodies': that of its
+/// forces at rest is ignored, as no step is limited there.
+TEST(RestingPair, moves_as_in_a_motion) {
+  TwoBodies bodies = blocks(2, 0.01, 0.05);
+  bodies.description.forces.of<Contact>().front().method = Contact::Method::kinematic;
+  bodies.description.dynamics = {.duration = 1.0, .damping = 5.0};
+  Scene moving = bodies.scene();
+  moving.settings.quasi_static = false;
+  moving.forces = in_motion(std::move(moving.forces));
+  bodies.description.quasi_static = false;
+  const Scene dynamic = bodies.scene();
+  const auto end = [](const Scene& scene) {
+    Observer silent;
+    return integrate(Model(scene, {"tl-perturbation"}), silent).u;
+  };
+  EXPECT_EQ(end(moving), end(dynamic));
 }
 
 /// The same bits for any number of threads.
