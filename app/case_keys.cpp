@@ -38,6 +38,12 @@ mesh.file = "FILE": instead of a generator, a mesh of hexahedra, in m: .h5 as `s
   .nii of NIfTI: an element for each voxel that is not 0, the element set label-N for each label N
 )";
 
+constexpr std::string_view bodies = R"(
+[[mesh.bodies]], several times: bodies of one mesh, each with a generator and its keys, and with name, which is
+  also that of the sets of its nodes and elements, turn = [x, y, z] (default: none), a rotation about the origin in
+  degrees whose direction is its axis, and offset = [x, y, z] in m (default: none), a displacement after it
+)";
+
 constexpr std::string_view materials = R"(
 material.fibres = { axis = "x", "y" or "z", center = [x, y, z] in m (default: the origin), radii = [r0, r1] in m,
   angles = [a0, a1] in degrees }: fibres at an angle to the circle that is linear between two radii; sheets are
@@ -83,7 +89,7 @@ std::string describe_case_keys() {
       text += fmt::format("\n[{}], with any {}\n", first->table, first->choice_key);
     }
     text += keys;
-    if (first->table == "mesh") text += mesh_file;
+    if (first->table == "mesh") text.append(mesh_file).append(bodies);
     if (first->table == "material") text += materials;
   }
   return text + fmt::format("\nformula: {}\n", formula_language());

@@ -62,8 +62,11 @@ std::string meshes_text(const Choice& choice) {
   for (const auto& [mesh, evaluation, kept] : choice.others) {
     if (!kept) add("-", mesh, evaluation);
   }
-  if (std::holds_alternative<MeshFile>(choice.meshes.front().problem.description.mesh)) {
-    text += "the mesh comes from a file: no coarser one was tried\n";
+  const MeshSource& source = choice.meshes.front().problem.description.mesh;
+  if (!std::holds_alternative<AnyGenerator>(source)) {
+    text +=
+        fmt::format("the mesh {}: no coarser one was tried\n",
+                    std::holds_alternative<MeshFile>(source) ? "comes from a file" : "has several bodies");
   }
   return text;
 }

@@ -146,13 +146,27 @@ void print_replaced_sets(const CaseOnMesh& problem, const Scene& scene, const st
   }
 }
 
+/// The boundary of a scene without the faces of two surfaces that a [[contact]] keeps apart.
+std::vector<Quadrilateral> boundary_without_contact(const Case& description, const Scene& scene) {
+  std::vector<Quadrilateral> faces = scene.boundary;
+  for (const Contact& contact : description.forces.of<Contact>()) {
+    if (contact.other.empty()) continue;
+    const auto& set = scene.sets.at(contact.set);
+    std::erase_if(faces, [&](const Quadrilateral& face) {
+      return std::ranges::all_of(face, [&](int node) { return std::ranges::binary_search(set, node); });
+    });
+  }
+  return faces;
+}
+
 /// Warnings of probable mistakes, and a note on sets that no table uses.
 void warn_of_oddities(const Case& description, const Scene& scene, const std::string& of) {
   const std::string file = description.file.string();
   const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
   for (const std::string& cut : cut_planes(scene.mesh, on_boundary, description.sets))
     warn(fmt::format("{}: {}, which seem to be one plane; if they are, widen the limits", file, cut));
-  const std::string seam = described(seam_of(scene.mesh, scene.ties, scene.boundary), scene.mesh);
+  const std::string seam =
+      described(seam_of(scene.mesh, scene.ties, boundary_without_contact(description, scene)), scene.mesh);
   if (!seam.empty()) warn(of + seam);
   warn_of_units(description, scene, of);
   std::vector<std::string> unused;

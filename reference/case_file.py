@@ -94,6 +94,14 @@ class Support:
 
 
 @dataclass(frozen=True)
+class Contact:
+    """Two node sets whose faces may touch each other, without friction."""
+
+    set_name: str
+    other_name: str
+
+
+@dataclass(frozen=True)
 class Material:
     """A material: a name in LAWS, the law's parameters (SI units), directions as tuples.
 
@@ -146,7 +154,7 @@ class Case:
     """A case: name, materials in the order of the file, imposed motions and loads.
 
     motion: a Motion, or None for a quasi-static case. obstacles: tuple of Obstacle, which nothing
-    penetrates.
+    penetrates. contacts: tuple of Contact.
     """
 
     name: str
@@ -160,6 +168,7 @@ class Case:
     masses: tuple = ()
     motion: Motion | None = None
     obstacles: tuple = ()
+    contacts: tuple = ()
 
 
 def find_case(folder, name):
@@ -187,8 +196,6 @@ def read_case(path, name=None):
     displacements = read_all("displacement", _displacement)
     rotations, supports = read_all("rotation", _rotation), read_all("support", _support)
     obstacles = read_all("obstacle", _obstacle, moving)
-    if "contact" in tables:
-        raise InputError(f"{path}: [[contact]] is not supported here; allowed: [[obstacle]]")
     if not (displacements or rotations or supports or obstacles or moving):
         tables = "[[displacement]], [[rotation]], [[support]] or [[obstacle]]"
         raise InputError(f"{path}: has no {tables}; at least one table is required")
@@ -208,6 +215,7 @@ def read_case(path, name=None):
         masses=read_all("mass", _mass),
         motion=_motion(path, tables, read_all("velocity", _velocity)) if moving else None,
         obstacles=obstacles,
+        contacts=read_all("contact", _contact, moving),
     )
 
 
@@ -343,6 +351,14 @@ def _obstacle(where, table, moving):
     factor, _ = factor_and_curve(where, table, moving)
     own = _read(where, table, *table, **own)
     return Obstacle(name, shape, own, tuple(factor * v for v in moved), *rest)
+
+
+def _contact(where, table, moving):
+    """A [[contact]] table as a Contact."""
+    if moving or table.get("friction"):
+        raise InputError(f"{where}: contact in motion or with friction is not supported here")
+    others = (*CURVE, "name", "penalty", "method", "friction")
+    return Contact(*_read(where, table, *others, set=str, other=str).values())
 
 
 def _read(where, table, *others, **keys):

@@ -112,7 +112,8 @@ class HexMesh:
     tuple of Gravity. axes: (m, 3, 3) material axes of each element by rows, or None. ties:
     (tied, of, weights) of k pairs of a tied node and one whose displacement it follows with that
     weight, or None. touching: tuple of Touching. masses: tuple of
-    Attached.
+    Attached. contacts: tuple of pairs of (n,) bool, nodes whose faces may touch each other; only
+    symmetry.py knows them.
     """
 
     points: np.ndarray
@@ -126,6 +127,7 @@ class HexMesh:
     ties: tuple | None = None
     touching: tuple = ()
     masses: tuple = ()
+    contacts: tuple = ()
 
     def imposed(self, load=1.0):
         """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, else zero)."""

@@ -145,6 +145,10 @@ def load_case_mesh(case, mesh_path):
     touching = tuple(
         Touching(_loaded(mesh_path, file, "obstacle", one.set_name), one) for one in case.obstacles
     )
+    contacts = tuple(
+        tuple(_loaded(mesh_path, file, "contact", name) for name in (one.set_name, one.other_name))
+        for one in case.contacts
+    )
     pushed = tractions or case.pressures or touching or case.gravity
     if not (mesh.largest_imposed() or pushed or case.motion and case.motion.velocities):
         raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
@@ -153,7 +157,10 @@ def load_case_mesh(case, mesh_path):
         Attached(_mask(file, _members(mesh_path, file, "mass", one.set_name)), one.total)
         for one in case.masses
     )
-    return dataclasses.replace(mesh, **loads, touching=touching, masses=masses), file
+    return (
+        dataclasses.replace(mesh, **loads, touching=touching, masses=masses, contacts=contacts),
+        file,
+    )
 
 
 def initial_velocity(case, mesh_path):

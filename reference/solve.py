@@ -27,7 +27,7 @@ from hexahedra import refine
 from mesh_file import initial_velocity, load_case_mesh
 from problem import MixedProblem
 from reference_file import MOTION, NOT_ESTIMATED, write_reference
-from symmetry import expand, halve
+from symmetry import expand, halve, part_bodies
 from tied_problem import TiedProblem
 
 KINDS = ("golden", MOTION)
@@ -47,7 +47,7 @@ def solve_case(case, mesh, refinements, load_steps, make=MixedProblem):
     ComputationError.
     """
     # The golden is the oracle for everything else, so it takes no short cut on its own mesh.
-    part, halves = halve(mesh) if refinements else (mesh, [])
+    part, halves = halve(mesh) if refinements else part_bodies(mesh)
     n_nodes = len(part.points)
     displacements, coarse = [], None
     for level in range(refinements + 1):

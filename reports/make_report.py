@@ -15,6 +15,7 @@ if __name__ == "__main__":
 
 from common.command import command_line, option
 from sandglass_report.evidence import read_evidence
+from sandglass_report.contact import read_contact
 from sandglass_report.identified import read_identified
 from sandglass_report.growth import growth_plate, read_growth
 from sandglass_report.verdicts import read_verdicts
@@ -51,6 +52,7 @@ def make(options):
         growth=growth,
         refinement=refinement_plate(read_refinement(refined)) if refined.exists() else None,
         identified=read_identified(options.identified) if options.identified.exists() else (),
+        contact=tuple(read_contact(options.contact)) if options.contact.exists() else (),
         second=second,
         submissions=tuple(read_submissions(options.submissions)),
     )
@@ -77,6 +79,7 @@ INPUTS = {
         "reports/figures/identified_stiffness.json",
         "of bench/identified_stiffness.py",
     ),
+    "contact": ("reports/figures/contact_cost.json", "of bench/contact_cost.py"),
     "submissions": ("results", "folder of submitted results"),
     "claims": ("verification/claims.toml", "claims and their tests"),
     "mutants": ("verification/mutants/RESULTS.md", "of verification/mutants/run.py"),

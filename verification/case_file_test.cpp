@@ -330,6 +330,34 @@ TEST(CaseFile, numerical_settings_follow_what_the_hash_leaves_out) {
   });
 }
 
+/// Two boxes in place of the box of `good`.
+const std::string two_boxes = R"([[mesh.bodies]]
+name = "one"
+generator = "box"
+size = [1.0, 2.0, 3.0]
+elements = [1, 2, 3]
+
+[[mesh.bodies]]
+name = "two"
+offset = [0.0, 0.0, 3.0]
+generator = "box"
+size = [1.0, 2.0, 3.0]
+elements = [1, 1, 1]
+)";
+const std::string two_bodies = with("[mesh]\n" + own_mesh + "\n", two_boxes);
+
+TEST(CaseFile, bodies_have_sets_which_rules_may_replace) {
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("a.toml", two_bodies));
+  EXPECT_EQ(scene.mesh.cells.size(), 7U);
+  EXPECT_EQ(scene.sets.at("one").size(), 24U);
+  EXPECT_EQ(scene.element_sets.at("two"), (std::vector<int>{6}));
+  EXPECT_EQ(scene.sets.at("top").size(), 10U);  // of both bodies, as the rule is about positions
+  const Scene other =
+      read_scene(folder.write("b.toml", replaced(two_bodies, "top =", "two = { y = [0.0, 0.0] }\ntop =")));
+  EXPECT_EQ(other.sets.at("two").size(), 12U);
+}
+
 /// Fields of tables without declared parameters, each changed in the text of a case.
 TEST(CaseFile, hash_follows_the_fields_of_other_tables) {
   const TemporaryFolder folder;
@@ -352,6 +380,10 @@ displacement = [0.0, 0.0, 0.125]
   std::set<std::string> hashes{once};
   std::size_t changes = 0;
   for (const auto& [old, other] : std::vector<std::pair<std::string, std::string>>{
+           {"[mesh]\n" + own_mesh + "\n", two_boxes},
+           {"[mesh]\n" + own_mesh + "\n", replaced(two_boxes, "\"one\"", "\"three\"")},
+           {"[mesh]\n" + own_mesh + "\n", replaced(two_boxes, "offset", "turn")},
+           {"[mesh]\n" + own_mesh + "\n", replaced(two_boxes, "[1, 2, 3]", "[1, 2, 4]")},
            {"center = [0.0, 0.5]", "center = [0.1, 0.5]"},
            {"axis = \"z\"", "axis = \"y\""},
            {"semi_axes = [1.0, 2.0] ", "semi_axes = [1.0, 2.5] "},
@@ -497,6 +529,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"unknown_law",
                 with("law = \"neo-hookean\"", "law = \"neo-hokean\""),
                 {"material.law = 'neo-hokean' is not known", "did you mean 'neo-hookean'?"}},
+        BadCase{"body_without_name",
+                replaced(two_bodies, "name = \"two\"", "name = \"\""),
+                {"mesh.bodies.name = '' must be a word without '/'"}},
+        BadCase{"two_bodies_of_one_name",
+                replaced(two_bodies, "\"two\"", "\"one\""),
+                {"mesh.bodies.name = 'one' appears twice; every body needs its own name"}},
+        BadCase{"bodies_beside_a_generator",
+                replaced(two_bodies, "[[mesh.bodies]]\nname = \"one\"",
+                         "[mesh]\ngenerator = \"box\"\n\n[[mesh.bodies]]\nname = \"one\""),
+                {"mesh.generator is not a key"}},
+        BadCase{"misspelt_key_of_a_body",
+                replaced(two_bodies, "offset", "ofset"),
+                {"mesh.bodies.ofset", "did you mean 'offset'?"}},
+        BadCase{"focus_outside_of_the_ball",
+                with(own_mesh,
+                     "generator = \"ellipsoid\"\nsemi_axes = [1.0, 1.0, 1.0]\ncore_elements = 2\n"
+                     "shell_layers = 1\nfocus = [0.8, 0.6, 0.0]"),
+                {"mesh.focus = [0.8, 0.6, 0] must be in the unit ball"}},
         BadCase{"unknown_generator",
                 with("generator = \"box\"", "generator = \"torus\""),
                 {"mesh.generator = 'torus' is not known", "known: box, ellipsoid, cylinder"}},

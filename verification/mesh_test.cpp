@@ -14,7 +14,9 @@
 #include "mesh/hexahedron.hpp"
 #include "mesh/node_set.hpp"
 #include "mesh/parts.hpp"
+#include "mesh/placed_body.hpp"
 #include "mesh/quality.hpp"
+#include "mesh/vectors.hpp"
 #include "problem/masses.hpp"
 #include "support/plain_generators.hpp"
 #include "support/scenes.hpp"
@@ -444,6 +446,55 @@ TEST(MeshQuality, every_corner_and_gauss_point_counts) {
     EXPECT_LT(expected, 0.0);
     EXPECT_NEAR(smallest_measure(dented_cube(corner, 0.6)), expected, 1e-15) << corner;
   }
+}
+
+/// The map of the ball onto itself takes the centre to the focus f and the sphere to itself. It is conformal:
+/// distances change by the root of the scales (1 - f^2) / (1 + 2 f . x + f^2 x^2) at both ends, which is
+/// (1 - f) / (1 + f) at the pole. Then the axes scale the ball.
+TEST(EllipsoidMesh, is_finer_near_its_focus) {
+  const std::array<double, 3> semi_axes{3.0, 2.0, 5.0};
+  const EllipsoidMesh plain{{1.0, 1.0, 1.0}, 8, 2};
+  EllipsoidMesh focused{semi_axes, 8, 2};
+  focused.focus = {0.0, 0.6, 0.0};
+  const Vector pole{0.0, 1.0, 0.0};
+  const auto scale = [](const Vector& x) { return 0.64 / (1.0 + 1.2 * x[1] + 0.36 * dot(x, x)); };
+  const Mesh ball = plain.build(), mesh = focused.build();
+  EXPECT_EQ(mesh.cells, ball.cells);
+  const auto outside = boundary_nodes(ball);
+  const auto back = [&](std::size_t n) {
+    const Vector& X = mesh.points[n];
+    return Vector{X[0] / semi_axes[0], X[1] / semi_axes[1], X[2] / semi_axes[2]};
+  };
+  for (std::size_t n = 0; n < outside.size(); ++n) {
+    const Vector& x = ball.points[n];
+    const double h = distance(x, pole);
+    EXPECT_TRUE(!outside[n] || std::abs(length(back(n)) - 1.0) < 1e-14);
+    EXPECT_TRUE(length(x) > 1e-14 || distance(back(n), focused.focus) < 1e-14);
+    EXPECT_NEAR(distance(back(n), pole), h * std::sqrt(0.25 * scale(x)), 1e-14);
+  }
+  EXPECT_GT(smallest_scaled_jacobian(mesh), 0.25);
+}
+
+/// Boxes of different sizes; a third of a turn about the diagonal of space takes x to y, y to z, z to x.
+TEST(PlacedBodies, are_turned_then_moved_and_have_sets) {
+  const double third = 120.0 / std::sqrt(3.0);
+  const auto [mesh, sets, element_sets] =
+      build({{.label = "b", .generator = BoxMesh{{1.0, 2.0, 3.0}, {1, 1, 1}}},
+             {.label = "a",
+              .turn = {third, third, third},
+              .offset = {0.5, 0.25, -1.0},
+              .generator = BoxMesh{{1.0, 2.0, 3.0}, {1, 2, 1}}}});
+  EXPECT_EQ(sets, (NodeSets{{"a", {8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19}},
+                            {"b", {0, 1, 2, 3, 4, 5, 6, 7}}}));
+  EXPECT_EQ(element_sets, (ElementSets{{"a", {1, 2}}, {"b", {0}}}));
+  EXPECT_EQ(parts_of_nodes(mesh, {}),
+            (std::vector<int>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}));
+  const Mesh plain = BoxMesh{{1.0, 2.0, 3.0}, {1, 2, 1}}.build();
+  for (std::size_t n = 0; n < plain.points.size(); ++n) {
+    const Vector& X = plain.points[n];
+    EXPECT_LT(distance(mesh.points[8 + n], {X[2] + 0.5, X[0] + 0.25, X[1] - 1.0}), 1e-14);
+  }
+  EXPECT_NEAR(volume(mesh), 12.0, 1e-13);
 }
 
 /// A node has an eighth of the mass of each of its elements, here of lengths 1 and 3.

@@ -164,7 +164,8 @@ def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
     refused("run", case, message="must end in .msh (Gmsh), .inp (Abaqus), .vtu, .vtk, .npy or .nii")
     case.write_text(case.read_text().replace("file =", "fiel ="))
     message = (
-        "mesh.generator is missing; this key or mesh.file must be given, but there is only fiel"
+        "mesh.generator is missing; this key, mesh.file or [[mesh.bodies]] must be given, but "
+        "there is only fiel"
     )
     refused("run", case, message=message)
 

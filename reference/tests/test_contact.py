@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from blocks import ELEMENTS, distorted_block
+from case_file import Contact as CasePair
 from case_file import Material, read_case
 from common.errors import InputError
 from common.hexahedron import CUBE
@@ -245,9 +246,16 @@ shape = "ellipsoid"
 inside = true
 point = [0, 0, 0]
 half_sizes = [3, 2, 1]
+[[contact]]
+name = "pair"
+set = "top"
+other = "bottom"
+penalty = 2.0
 """
     path.write_text(text)
-    tool, room = read_case(path).obstacles
+    case = read_case(path)
+    assert case.contacts == (CasePair("top", "bottom"),)
+    tool, room = case.obstacles
     ends = {"point": (0.0, 0.0, 1.0), "end": (1.0, 0.0, 1.0), "radius": 0.5}
     assert tool == Obstacle("top", "capsule", ends, (0.0, 0.0, -1.0), penalty=7.0)
     assert room.inside and room.parameters["half_sizes"] == (3.0, 2.0, 1.0)
@@ -257,7 +265,8 @@ half_sizes = [3, 2, 1]
         ("penalty", "friction", "friction"),
         ("inside", "outside", "unknown key"),
         ('name = "press"', 'name = "press", answer = "dynamic"', "motion"),
-        ("[[obstacle]]", "[[contact]]", r"\[\[contact\]\] is not supported here"),
+        ('other = "bottom"', "", "contact.*other"),
+        ("penalty = 2.0", "friction = 0.1", "with friction is not supported"),
     ):
         path.write_text(text.replace(wrong, message))
         with pytest.raises(InputError, match=error):

@@ -10,7 +10,7 @@ import jinja2
 import markupsafe
 
 from common.files import write_json, write_whole, writing
-from sandglass_report import bending, bodies, experiment, findings, headline, identified
+from sandglass_report import bending, bodies, contact, experiment, findings, headline, identified
 from sandglass_report import interactive, kappa, lines, maps
 from sandglass_report import measured, paper, plates, provenance, published, replication, speed
 from sandglass_report import style, tips, viewer
@@ -22,8 +22,8 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 # A claim's name for a section -> the id of the section's heading.
 OWN_NAMES = (
-    "paper shapes bending experiment published programs refinement growth maps kappa golden "
-    "limits runs"
+    "paper shapes bending experiment published programs refinement contact growth maps kappa "
+    "golden limits runs"
 )
 ANCHORS = {"chart": "chart-head"} | {name: name for name in OWN_NAMES.split()}
 
@@ -41,6 +41,7 @@ class Inputs:
     growth: plates.Plate | None = None
     refinement: plates.Plate | None = None
     identified: tuple = ()  # records of identified stiffnesses
+    contact: tuple = ()  # records of the cost of contact
     second: dict = field(default_factory=dict)  # kind -> SecondProgram
     submissions: tuple = ()
 
@@ -104,6 +105,7 @@ def write_report(inputs, page):
             experiment=experiment.experiment_plate(inputs.verdicts.tips, palette),
             identified=inputs.identified
             and identified.identified_plate(inputs.identified, palette),
+            contact=inputs.contact and contact.contact_plate(inputs.contact, palette),
             second=inputs.second,
             submissions=inputs.submissions,
             evidence=inputs.evidence,

@@ -36,7 +36,7 @@ void Contact::resolve(ForceResolver& resolver) const {
                 "surfaces without common nodes, or one set without `other`, which may touch itself");
     }
   }
-  if (method == Method::kinematic && !resolver.tied.empty()) {
+  if (method == Method::kinematic && resolver.in_motion && !resolver.tied.empty()) {
     for (const int node : nodes_of(all)) {
       if (!resolver.tied[at(node)]) continue;
       refuse_at(node, "follows others, by a tie or on a refined mesh, which the kinematic method cannot move",

@@ -209,8 +209,9 @@ class ContactForce : public BodyForce {
   virtual void add_springs(Factors factors, NodalRows u, const Row<double>* memory,
                            std::vector<Spring>& springs) const = 0;
 
-  /// The force that takes its place in static equilibrium; none: it is the same.
+  /// The force that takes its place in static equilibrium, or in motions; none: it is the same.
   virtual std::shared_ptr<const BodyForce> at_rest() const { return nullptr; }
+  virtual std::shared_ptr<const BodyForce> in_motion() const { return nullptr; }
 
   /// The body was moved to static equilibrium and stopped there, with this force (N) and moment (N m) on it:
   /// sets the rows such that the next step of a motion is the first.
@@ -274,13 +275,22 @@ inline std::vector<Movable> movable_of(const BodyForces& forces) {
   return all;
 }
 
-/// The forces on a body in static equilibrium.
-inline BodyForces at_rest(BodyForces forces) {
+/// The forces with those that `other` of a contact gives in its place.
+template <class Other>
+BodyForces with_contacts(BodyForces forces, const Other& other) {
   for (auto& force : forces) {
     const auto* contact = dynamic_cast<const ContactForce*>(force.get());
-    if (auto rest = contact != nullptr ? contact->at_rest() : nullptr) force = std::move(rest);
+    if (auto another = contact != nullptr ? other(*contact) : nullptr) force = std::move(another);
   }
   return forces;
+}
+
+/// The forces on a body in static equilibrium, and in motions.
+inline BodyForces at_rest(BodyForces forces) {
+  return with_contacts(std::move(forces), [](const ContactForce& contact) { return contact.at_rest(); });
+}
+inline BodyForces in_motion(BodyForces forces) {
+  return with_contacts(std::move(forces), [](const ContactForce& contact) { return contact.in_motion(); });
 }
 
 }  // namespace sandglass

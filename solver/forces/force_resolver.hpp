@@ -26,6 +26,7 @@ struct ForceResolver {
   std::vector<double> young_moduli = {};  ///< of elements, of the undeformed material, Pa
   std::vector<bool> tied = {};            ///< whether a node follows others; empty: none
   std::vector<bool> held = {};            ///< whether all components of a node are imposed; empty: none
+  bool in_motion = true;                  ///< else in static equilibrium
 
   /// The nodes of the set that a table names with a key. Throws InputError if there is no such set or it is
   /// empty.

@@ -89,9 +89,8 @@ void Obstacle::resolve(ForceResolver& resolver) const {
                     resolver.file, name, label, set));
   }
   const Vector start = sum({}, curve.at(0.0, 0.0), displacement);
-  const auto make = method == Method::penalty ? make_penalty_contact : make_kinematic_contact;
-  auto contact = make(std::move(touching), *this, shape_of(*this, resolver.file),
-                      {resolver.number_of(curve), resolver.add_moves()}, start);
+  auto contact = make_moving_contact(std::move(touching), *this, shape_of(*this, resolver.file),
+                                     {resolver.number_of(curve), resolver.add_moves()}, start);
   const auto depth_of = [&](const TouchingNode& one) { return contact->depth_at_start(one); };
   const TouchingNode deepest = *std::ranges::max_element(contact->touching(), {}, depth_of);
   if (const double depth = depth_of(deepest); depth > scale.rounding()) {

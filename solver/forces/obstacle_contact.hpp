@@ -159,4 +159,15 @@ std::shared_ptr<ObstacleContact> make_kinematic_contact(std::vector<TouchingNode
                                                         const Obstacle& obstacle, const ObstacleShape& shape,
                                                         const ObstacleCurves& curves, const Vector& start);
 
+/// In motion, by the method of the obstacle.
+inline std::shared_ptr<ObstacleContact> make_moving_contact(std::vector<TouchingNode> nodes,
+                                                            const Obstacle& obstacle,
+                                                            const ObstacleShape& shape,
+                                                            const ObstacleCurves& curves,
+                                                            const Vector& start) {
+  const auto make =
+      obstacle.method == Obstacle::Method::penalty ? make_penalty_contact : make_kinematic_contact;
+  return make(std::move(nodes), obstacle, shape, curves, start);
+}
+
 }  // namespace sandglass

@@ -16,6 +16,9 @@ class RestingContact final : public ObstacleContact {
   using ObstacleContact::ObstacleContact;
 
   std::shared_ptr<const BodyForce> at_rest() const override { return nullptr; }
+  std::shared_ptr<const BodyForce> in_motion() const override {
+    return make_moving_contact(nodes_, obstacle_, shape_, curves_, start_);
+  }
   bool remembers_path() const override { return rubs(); }
 
   void add_contact(Factors factors, NodalRows u, Row<double>* rows,

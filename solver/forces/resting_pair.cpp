@@ -26,18 +26,19 @@ std::string_view why_none(const Contact& contact) {
 /// which they slip; its face and their gap there, m; the extension of their spring along the surface, m.
 class RestingPair final : public SurfacePair {
  public:
-  explicit RestingPair(const SurfacePair& pair, const ForceTraits& traits)
-      : SurfacePair(pair, pair.contact().friction > 0.0 ? 5 : 2, traits) {
+  RestingPair(std::shared_ptr<const SurfacePair> moving, const ForceTraits& traits)
+      : SurfacePair(*moving, moving->contact().friction > 0.0 ? 5 : 2, traits), moving_(std::move(moving)) {
     if (rubs()) start_ = undeformed([&](NodalRows u, Row<double>* rows) { note_places(0.0, u, rows); });
   }
 
   bool remembers_path() const override { return rubs() && !contact_.other.empty(); }
 
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override {
-    const auto inside = SurfacePair::restricted_to(part);
-    return inside ? make_resting_pair(static_cast<const SurfacePair&>(*inside)) : nullptr;
+    const auto inside = std::static_pointer_cast<const SurfacePair>(moving_->restricted_to(part));
+    return inside ? make_resting_pair(inside) : nullptr;
   }
   std::shared_ptr<const BodyForce> at_rest() const override { return nullptr; }
+  std::shared_ptr<const BodyForce> in_motion() const override { return moving_; }
 
   void add_contact(Factors factors, NodalRows u, Row<double>* rows,
                    AtNodes<Row<double>> forces) const override {
@@ -323,15 +324,16 @@ class RestingPair final : public SurfacePair {
     });
   }
 
+  const std::shared_ptr<const SurfacePair> moving_;
   Rows<double> start_;  // with friction the rows of the undeformed body
 };
 
 }  // namespace
 
-std::shared_ptr<const BodyForce> make_resting_pair(const SurfacePair& pair) {
-  const Contact& contact = pair.contact();
-  return std::make_shared<RestingPair>(
-      pair, ForceTraits{Contact::name, false, contact.friction > 0.0, why_none(contact)});
+std::shared_ptr<const BodyForce> make_resting_pair(std::shared_ptr<const SurfacePair> pair) {
+  const Contact& contact = pair->contact();
+  const ForceTraits traits{Contact::name, false, contact.friction > 0.0, why_none(contact)};
+  return std::make_shared<RestingPair>(std::move(pair), traits);
 }
 
 }  // namespace sandglass

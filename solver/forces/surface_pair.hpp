@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -20,14 +21,14 @@ struct SurfacesOfPair {
 
 class SurfacePair;
 
-/// At rest: without friction, between two surfaces. Points that touch are pushed along the normal of a
-/// triangle of the face.
-std::shared_ptr<const BodyForce> make_resting_pair(const SurfacePair& pair);
+/// A pair of motions at rest: without friction, between two surfaces. Points that touch are pushed along the
+/// normal of a triangle of the face.
+std::shared_ptr<const BodyForce> make_resting_pair(std::shared_ptr<const SurfacePair> pair);
 
 /// Points of a surface against faces of the other, and the other way round, or of a surface against its own
 /// faces: what all methods share. A point touches if it is behind a face that opposes it, not deeper than the
 /// reach. Points far from all faces are searched again only when nodes have moved far enough to touch.
-class SurfacePair : public ContactForce {
+class SurfacePair : public ContactForce, public std::enable_shared_from_this<SurfacePair> {
  public:
   /// A node, or one next to a point, and its depth, m.
   struct Deepest {
@@ -44,7 +45,7 @@ class SurfacePair : public ContactForce {
   double half_thickness() const final { return given_.reach; }
   double travel() const final { return 0.0; }
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override;
-  std::shared_ptr<const BodyForce> at_rest() const override { return make_resting_pair(*this); }
+  std::shared_ptr<const BodyForce> at_rest() const override { return make_resting_pair(shared_from_this()); }
 
   // In motions there is no search for equilibrium.
   void add_contact_potential(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,

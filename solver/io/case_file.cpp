@@ -7,6 +7,7 @@
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "io/case_materials.hpp"
+#include "io/case_mesh.hpp"
 #include "io/case_variants.hpp"
 #include "io/foreign_file.hpp"
 #include "io/mesh_file.hpp"
@@ -18,19 +19,7 @@ namespace {
 
 void read_mesh(TableReader& reader, Case& description) {
   TableReader table = reader.required_table("mesh");
-  if (const auto file = table.optional<std::string>("file")) {
-    description.mesh = MeshFile{description.file.parent_path() / *file,
-                                table.optional<Vector>("spacing", Range::positive())};
-  } else {
-    const auto keys = table.keys();
-    if (std::find(keys.begin(), keys.end(), "generator") == keys.end()) {
-      table.fail("generator",
-                 fmt::format("is missing; this key or mesh.file must be given, but there {}",
-                             keys.empty() ? "is no key" : fmt::format("is only {}", fmt::join(keys, ", "))));
-    }
-    description.mesh = table.required_listed<Generators>("generator");
-  }
-  table.finish();
+  description.mesh = read_mesh_source(table, description.file.parent_path());
 }
 
 CylinderRegion read_cylinder(TableReader table) {
@@ -249,6 +238,10 @@ Case read_case_file(const std::filesystem::path& path) {
 CaseOnMesh with_mesh(Case description) {
   if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
     auto [mesh, sets, element_sets] = read_mesh_of(description, *file);
+    return {std::move(description), std::move(mesh), std::move(sets), std::move(element_sets)};
+  }
+  if (const auto* bodies = std::get_if<std::vector<PlacedBody>>(&description.mesh)) {
+    auto [mesh, sets, element_sets] = build(*bodies);
     return {std::move(description), std::move(mesh), std::move(sets), std::move(element_sets)};
   }
   Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));

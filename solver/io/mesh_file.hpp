@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "io/hdf5_file.hpp"
+#include "mesh/mesh_with_sets.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
@@ -14,13 +15,6 @@ void write_mesh_file(const Scene& scene, const std::filesystem::path& path);
 
 /// The same, into an open file.
 void write_mesh(const Scene& scene, Hdf5File& file);
-
-/// A mesh and its sets.
-struct MeshWithSets {
-  Mesh mesh;
-  NodeSets sets;
-  ElementSets element_sets = {};
-};
 
 /// Reads /mesh of a file. Throws InputError if it is not a mesh of hexahedra (shape, node numbers).
 MeshWithSets read_mesh_file(const std::filesystem::path& path);

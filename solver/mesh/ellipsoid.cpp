@@ -1,9 +1,28 @@
 #include "mesh/ellipsoid.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "mesh/bulge.hpp"
 #include "mesh/lattice.hpp"
+#include "mesh/vectors.hpp"
 
 namespace sandglass {
+
+namespace {
+
+/// The map of the unit ball onto itself that keeps angles (Moebius) and moves the centre to f.
+Vector refocused(const Vector& x, const Vector& f) {
+  const double xx = dot(x, x), fx = dot(f, x), ff = dot(f, f), scale = 1.0 + 2.0 * fx + ff * xx;
+  return sum(sum({}, (1.0 - ff) / scale, x), (1.0 + 2.0 * fx + xx) / scale, f);
+}
+
+}  // namespace
+
+std::optional<BrokenRule> EllipsoidMesh::broken_rule() const {
+  if (length(focus) < 1.0) return std::nullopt;
+  return BrokenRule{"focus", fmt::format("= {} must be in the unit ball", focus)};
+}
 
 Mesh EllipsoidMesh::build() const {
   NodalField directions;
@@ -41,6 +60,7 @@ Mesh EllipsoidMesh::build() const {
   }
 
   for (auto& point : mesh.points) {
+    if (focus != Vector{}) point = refocused(point, focus);
     for (std::size_t i = 0; i < 3; ++i) point[i] *= semi_axes[i];
   }
   return mesh;

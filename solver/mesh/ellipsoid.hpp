@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <tuple>
 
@@ -19,6 +20,7 @@ struct EllipsoidMesh {
   int shell_layers = 0;
   double core_size = 0.62;
   double core_bulge = 0.625;
+  Vector focus{};
 
   static constexpr auto parameters() {
     using M = EllipsoidMesh;
@@ -31,8 +33,14 @@ struct EllipsoidMesh {
         Parameter{&M::core_size, "core_size", "-", Range::between(0.0, 1.0),
                   "size of the core in the unit ball", false},
         Parameter{&M::core_bulge, "core_bulge", "-", Range::at_least(0.0),
-                  "share of the ball in the core's shape, in addition to half of the cube", false}};
+                  "share of the ball in the core's shape, in addition to half of the cube", false},
+        Parameter{
+            &M::focus, "focus", "-", Range::between(-1.0, 1.0),
+            "where in the unit ball its centre is moved to, f from it: elements next to it are smaller, on "
+            "the surface by (1 - f) / (1 + f), and far from it larger",
+            false}};
   }
+  std::optional<BrokenRule> broken_rule() const;
 
   Mesh build() const;
 };

@@ -12,16 +12,32 @@ namespace sandglass {
 
 namespace {
 
-/// "name(parameter=value,...)" for an aggregate with declared parameters.
+/// "name(parameter=value,...)" for an aggregate with declared parameters. Optional vectors that are zero are
+/// left out.
 template <class Aggregate>
 std::string described(const Aggregate& aggregate) {
   std::string text = fmt::format("{}(", Aggregate::name);
-  std::apply(
-      [&](const auto&... parameter) {
-        ((text += fmt::format("{}={},", parameter.name, aggregate.*(parameter.member))), ...);
-      },
-      Aggregate::parameters());
+  const auto add = [&]<class Value>(const Parameter<Aggregate, Value>& parameter) {
+    const Value& value = aggregate.*(parameter.member);
+    if constexpr (std::is_same_v<Value, Vector>) {
+      if (!parameter.required && value == Vector{}) return;
+    }
+    text += fmt::format("{}={},", parameter.name, value);
+  };
+  std::apply([&](const auto&... parameter) { (add(parameter), ...); }, Aggregate::parameters());
   return text + ")";
+}
+
+std::string described(const MeshSource& source) {
+  if (const auto* generator = std::get_if<AnyGenerator>(&source))
+    return std::visit([](const auto& g) { return described(g); }, *generator);
+  std::string text = "file";  // its content is in the mesh hash
+  if (const auto* bodies = std::get_if<std::vector<PlacedBody>>(&source)) {
+    text = "bodies";
+    for (const auto& [label, turn, offset, generator] : *bodies)
+      text += fmt::format("({}:{}:{}:{})", label, turn, offset, described(MeshSource(generator)));
+  }
+  return text;
 }
 
 std::string described(const NodeSetRule& rule) {
@@ -138,12 +154,7 @@ std::optional<BrokenRule> Refinement::broken_rule() const {
 }
 
 std::string case_hash(const Case& description) {
-  std::string text;
-  if (const auto* generator = std::get_if<AnyGenerator>(&description.mesh)) {
-    text += std::visit([](const auto& g) { return described(g); }, *generator);
-  } else {
-    text += "file";  // its content is in the mesh hash
-  }
+  std::string text = described(description.mesh);
   for (const auto& material : description.materials) {
     text += std::visit([](const auto& law) { return described(law); }, material.law);
     text += described(material.volume) + described(material.fibres);

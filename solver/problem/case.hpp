@@ -9,8 +9,8 @@
 #include "element/method_choice.hpp"
 #include "forces/forces.hpp"
 #include "material/materials.hpp"
-#include "mesh/generators.hpp"
 #include "mesh/node_set.hpp"
+#include "mesh/placed_body.hpp"
 #include "problem/fibres.hpp"
 #include "problem/settings.hpp"
 
@@ -21,6 +21,9 @@ struct MeshFile {
   std::filesystem::path path;
   std::optional<Vector> spacing = {};  ///< voxel size, m, for an image without one
 };
+
+/// Where a mesh comes from.
+using MeshSource = std::variant<AnyGenerator, std::vector<PlacedBody>, MeshFile>;
 
 /// A material, its fibres and its elements.
 struct CaseMaterial : Material {
@@ -120,7 +123,7 @@ struct InitialVelocity {
 
 /// The contents of a case file as plain data, checked key by key.
 struct Case : CaseSettings {
-  std::variant<AnyGenerator, MeshFile> mesh;
+  MeshSource mesh;
   std::vector<CaseMaterial> materials = std::vector<CaseMaterial>(1);
   std::vector<NodeSetRule> sets;
   std::vector<NodeSetRule> element_sets;  ///< rules for the centres of elements

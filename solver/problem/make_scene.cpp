@@ -173,7 +173,8 @@ void make_forces(const Case& description, Scene& scene, std::vector<double>& mas
                          .cells = scene.mesh.cells,
                          .young_moduli = young_moduli(scene.mesh, scene.materials),
                          .tied = tied_nodes(scene),
-                         .held = held_nodes(scene)};
+                         .held = held_nodes(scene),
+                         .in_motion = !description.quasi_static};
   description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
   scene.forces = description.quasi_static ? at_rest(resolver.all()) : resolver.all();
   scene.curves = std::move(resolver.curves);

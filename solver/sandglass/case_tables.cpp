@@ -4,6 +4,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "io/case_file.hpp"
+#include "io/case_mesh.hpp"
 #include "io/case_variants.hpp"
 #include "io/table_reader.hpp"
 
@@ -186,12 +187,7 @@ MeshWithSets mesh_of_keys(const std::string& keys) {
   TableReader table(tables.root, "mesh", "mesh");
   Case description;
   description.file = "mesh";
-  if (const auto file = table.optional<std::string>("file")) {
-    description.mesh = MeshFile{*file, table.optional<Vector>("spacing", Range::positive())};
-  } else {
-    description.mesh = table.required_listed<Generators>("generator");
-  }
-  table.finish();
+  description.mesh = read_mesh_source(table, {});
   CaseOnMesh found = with_mesh(std::move(description));
   return {std::move(found.mesh), std::move(found.sets), std::move(found.element_sets)};
 }

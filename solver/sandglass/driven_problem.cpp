@@ -49,10 +49,16 @@ MethodChoice choice_of(const CaseSettings& of_case, const SimulationSettings& se
   return choice;
 }
 
+/// A scene with the forces of contact in motions, also if its case is static.
+Scene in_motion(Scene scene) {
+  scene.forces = in_motion(std::move(scene.forces));
+  return scene;
+}
+
 }  // namespace
 
 DrivenProblem::DrivenProblem(Scene scene, const SimulationSettings& settings, Precision precision)
-    : scene_(std::move(scene)),
+    : scene_(in_motion(std::move(scene))),
       model_(scene_, choice_of(scene_.settings, settings, precision)),
       driven_(driven_sets(scene_)),
       targets_(scene_.constraints.size() + 3 * movable_of(scene_.forces).size()),

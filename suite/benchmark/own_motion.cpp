@@ -9,6 +9,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "forces/contact_force.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/stable_step.hpp"
 
@@ -108,6 +109,7 @@ Scene in_own_motion(const Scene& scene) {
   if (!scene.settings.quasi_static) return moving;
   const double crossing = crossing_time(scene), duration = own_motion_crossings * crossing;
   moving.settings.quasi_static = false;
+  moving.forces = in_motion(std::move(moving.forces));
   moving.settings.dynamics = {.duration = duration, .damping = own_motion_damping / crossing, .frames = 1};
   for (auto& curve : moving.curves) curve = stretched(std::move(curve), duration);
   return moving;

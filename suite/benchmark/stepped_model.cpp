@@ -6,11 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/work.hpp"
+#include "forces/contact_force.hpp"
 #include "problem/make_scene.hpp"
 #include "solve/adaption.hpp"
 #include "solve/health.hpp"
@@ -27,7 +29,8 @@ template <class Real>
 class SteppedModelOf final : public SteppedModel {
  public:
   SteppedModelOf(const Scene& scene, const MethodChoice& choice, const OwnMotion* motion)
-      : model_(scene, choice),
+      : moving_(moving(scene)),
+        model_(moving_ ? *moving_ : scene, choice),
         elements_(*std::get<std::unique_ptr<InternalForce<Real>>>(model_.internal_force())),
         leapfrog_(model_, elements_, 0.0),
         resident_(resident_motion(model_, elements_, leapfrog_)) {
@@ -100,13 +103,23 @@ class SteppedModelOf final : public SteppedModel {
   }
 
  private:
+  /// A static scene whose contacts have other forces in motions, with those.
+  static std::optional<Scene> moving(const Scene& scene) {
+    const auto changes = [](const ContactForce* contact) { return contact->in_motion() != nullptr; };
+    if (std::ranges::none_of(contacts_of(scene.forces), changes)) return std::nullopt;
+    Scene other = scene;
+    other.forces = in_motion(std::move(other.forces));
+    return other;
+  }
+
   /// Starts with other levels of the elements instead of the current ones.
   void set_levels(const std::vector<std::vector<double>>& levels) {
     starts_.assign(levels.size(), starts_.front());
     for (std::size_t n = 0; n < levels.size(); ++n) elements_.set_levels(starts_[n], levels[n]);
   }
 
-  Model model_;
+  const std::optional<Scene> moving_;
+  const Model model_;
   const InternalForce<Real>& elements_;
   Leapfrog<Real> leapfrog_;
   std::vector<State<Real>> starts_;

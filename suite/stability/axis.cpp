@@ -20,7 +20,7 @@ namespace {
 constexpr int most_evaluations = 20000;
 
 bool has_generator(const Case& description) {
-  return std::holds_alternative<AnyGenerator>(description.mesh);
+  return !std::holds_alternative<MeshFile>(description.mesh);
 }
 
 /// A set is not rigid in rotation once it is stretched.
@@ -82,8 +82,15 @@ void set_skew(Trial& trial, double value) {
 }
 
 void set_elements(Trial& trial, double value) {
-  auto& generator = std::get<AnyGenerator>(trial.description.mesh);
-  generator = with_elements_across(generator, static_cast<int>(value));
+  const auto set = [&](AnyGenerator& generator) {
+    generator = with_elements_across(generator, static_cast<int>(value));
+  };
+  MeshSource& mesh = trial.description.mesh;
+  if (auto* bodies = std::get_if<std::vector<PlacedBody>>(&mesh)) {
+    for (PlacedBody& body : *bodies) set(body.generator);
+  } else {
+    set(std::get<AnyGenerator>(mesh));
+  }
 }
 
 void set_bytes(Trial& trial, double value) {

@@ -9,6 +9,7 @@
 #include "choice/variations.hpp"
 #include "comparison/answer.hpp"
 #include "comparison/comparison.hpp"
+#include "forces/contact_force.hpp"
 #include "io/case_file.hpp"
 
 namespace sandglass {
@@ -49,6 +50,7 @@ Scene scene_of(const Trial& trial) {
                        trial.noise ? 0.0 : trial.load);
   if (!trial.is_dynamic()) return scene;
   scene.settings.quasi_static = false;
+  scene.forces = in_motion(std::move(scene.forces));
   const double crossing = crossing_time(scene);
   scene.settings.dynamics = {.duration = (trial.noise ? 10.0 : 4.0) * crossing,
                              .ramp_time = 2.0 * crossing,
