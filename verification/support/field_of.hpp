@@ -12,7 +12,7 @@ NodalField field_of(const Simulation<Real>& simulation) {
   const NodalView<Real> u = simulation.displacements();
   NodalField field;
   for (const int row : simulation.row_of_node()) {
-    const Real* components = u[index(row)];
+    const Real* components = u[at(row)];
     field.push_back({components[0], components[1], components[2]});
   }
   return field;
