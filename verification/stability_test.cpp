@@ -191,6 +191,8 @@ TEST(Map, names_what_is_wrong) {
   description.materials.front().law = Ogden{};
   EXPECT_THROW(require_possible(maps[0], description), InputError);
   EXPECT_EQ(usual_maps(description).size(), 3u);  // aspect-skew, cycles-load, step-load
+  description.forces.of<Obstacle>().emplace_back();  // it would keep its shape
+  EXPECT_THROW(require_possible(parse_map("skew"), description), InputError);
 }
 
 TEST(Answers, are_computed_once) {

@@ -85,6 +85,24 @@ void require_not_passed(const Touch& touch, const NodalField& points, long step)
       step, touch.name, touch.passed, X[0], X[1], X[2]));
 }
 
+void require_static_contact(const Scene& scene) {
+  const std::string file = scene.settings.file.string();
+  const auto contacts = contacts_of(scene.forces);
+  for (const ContactForce* contact : contacts) {
+    const std::string_view reason = contact->traits().no_potential;
+    if (reason.empty() || contact->remembers_path()) continue;
+    throw InputError(
+        fmt::format("{}: [[{}]] has no static equilibrium: {}; allowed: a dynamic case, or leave that out",
+                    file, contact->traits().name, reason));
+  }
+  if (!scene.coarser.empty() && movable_of(scene.forces).size() < contacts.size()) {
+    throw InputError(
+        fmt::format("{}: [[contact]] has no static equilibrium on a mesh with [[refine]]: coarser meshes do "
+                    "not know which points touch; allowed: a mesh of such elements, or a dynamic case",
+                    file));
+  }
+}
+
 void require_apart(const Scene& scene, const NodalField& u) {
   const Mesh& mesh = scene.mesh;
   for (const ContactForce* contact : contacts_of(scene.forces)) {

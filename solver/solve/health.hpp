@@ -28,6 +28,9 @@ void require_healthy(const Body<Real>& body, long step);
 /// Throws ComputationError if a node may have passed through a surface that it touched.
 void require_not_passed(const Touch& touch, const NodalField& points, long step);
 
+/// Throws InputError if a contact is supported in motions only.
+void require_static_contact(const Scene& scene);
+
 /// Throws ComputationError if a surface that may touch lies deep inside another element at displacements u
 /// (m), but did not at the start: a search for equilibrium may pass bodies through each other.
 void require_apart(const Scene& scene, const NodalField& u);

@@ -411,20 +411,7 @@ class Search {
 }  // namespace
 
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from, const NodalField* near) {
-  const auto contacts = contacts_of(model.scene().forces);
-  for (const ContactForce* contact : contacts) {
-    const std::string_view reason = contact->traits().no_potential;
-    if (reason.empty() || contact->remembers_path()) continue;
-    throw InputError(
-        fmt::format("{}: [[{}]] has no static equilibrium: {}; allowed: a dynamic case, or leave that out",
-                    model.scene().settings.file.string(), contact->traits().name, reason));
-  }
-  if (!model.scene().coarser.empty() && movable_of(model.scene().forces).size() < contacts.size()) {
-    throw InputError(
-        fmt::format("{}: [[contact]] has no static equilibrium on a mesh with [[refine]]: coarser meshes do "
-                    "not know which points touch; allowed: a mesh of such elements, or a dynamic case",
-                    model.scene().settings.file.string()));
-  }
+  require_static_contact(model.scene());
   require_held(model.scene());
   const auto start = std::chrono::steady_clock::now();
   Relaxation result = method_named(model.choice().method).is_condensed

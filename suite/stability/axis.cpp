@@ -23,9 +23,13 @@ bool has_generator(const Case& description) {
   return !std::holds_alternative<MeshFile>(description.mesh);
 }
 
-/// A set is not rigid in rotation once it is stretched.
+bool has_obstacles(const Case& description) {
+  return !description.forces.of<Obstacle>().empty();
+}
+
+/// A set is not rigid in rotation once it is stretched, and obstacles keep their shape.
 bool can_be_shaped(const Case& description) {
-  return has_generator(description) && description.rotations.empty();
+  return has_generator(description) && description.rotations.empty() && !has_obstacles(description);
 }
 
 bool has_poisson_ratio(const Case& description) {
@@ -59,10 +63,6 @@ void set_poisson_ratio(Trial& trial, double value) {
         if constexpr (requires { law.poisson_ratio = value; }) law.poisson_ratio = value;
       },
       trial.description.materials.front().law);
-}
-
-bool has_obstacles(const Case& description) {
-  return !description.forces.of<Obstacle>().empty();
 }
 
 void set_penalty(Trial& trial, double value) {
@@ -144,14 +144,14 @@ const std::vector<Axis>& list() {
        .values = {0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0},
        .apply = set_aspect,
        .possible = can_be_shaped,
-       .needs = "a mesh from a generator and no imposed rotation"},
+       .needs = "a mesh from a generator, no imposed rotation and no [[obstacle]]"},
       {.name = "skew",
        .range = Range::any(),
        .meaning = "slope dx/dz of body, elements and imposed displacements",
        .values = {0.0, 0.25, 0.5, 1.0},
        .apply = set_skew,
        .possible = can_be_shaped,
-       .needs = "a mesh from a generator and no imposed rotation"},
+       .needs = "a mesh from a generator, no imposed rotation and no [[obstacle]]"},
       {.name = "elements",
        .range = Range::at_least(1.0),
        .meaning = "elements across the thinnest part; all directions in proportion",
