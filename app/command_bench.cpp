@@ -8,6 +8,7 @@
 #include "app/machine.hpp"
 #include "app/progress.hpp"
 #include "app/scene_report.hpp"
+#include "assembly/method_entry.hpp"
 #include "benchmark/bench_json.hpp"
 #include "commands/bench.hpp"
 #include "commands/execution_options.hpp"
@@ -38,6 +39,7 @@ struct BenchOptions {
 BenchPlan make_plan(const BenchOptions& options) {
   BenchPlan plan{.methods = options.methods, .threads = options.threads};
   for (const auto& precision : options.precisions) plan.precisions.push_back(parse_precision(precision));
+  for (const auto& method : options.methods) method_named(method, "--methods");
   for (const int threads : options.threads) require_threads(threads);
   require_count("--repetitions", options.repetitions, 1'000'000);
   plan.settings.repetitions = options.repetitions;
