@@ -168,7 +168,7 @@ int run_case(const RunOptions& options) {
   warn_if_bound(*options.ranks, options.threads);
   const CaseOnMesh problem = with_mesh(find_case(options.name));
   const Scene scene = make_scene(problem);
-  require_quasi_static(options, scene.settings);
+  require_supported(options, scene);
   require_places(options, scene.settings);
   if (!options.sleep) {  // --sleep computes a part
     require_memory(static_cast<double>(scene.mesh.cells.size()),

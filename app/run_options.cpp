@@ -8,6 +8,7 @@
 #include "commands/kappa_option.hpp"
 #include "comparison/verdict.hpp"
 #include "device/opencl_processor.hpp"
+#include "forces/contact_force.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
@@ -73,15 +74,27 @@ void require_sensible(const RunOptions& options) {
   }
 }
 
-void require_quasi_static(const RunOptions& options, const CaseSettings& settings) {
-  if (settings.quasi_static) return;
-  const auto refuse = [&](const char* option, const char* what) {
-    throw InputError(
-        fmt::format("{}: '{}' is a dynamic case; {} quasi-static cases", option, settings.name, what));
+void require_supported(const RunOptions& options, const Scene& scene) {
+  const CaseSettings& settings = scene.settings;
+  const auto refuse = [&](const char* option, const std::string& why) {
+    throw InputError(fmt::format("{}: {}", option, why));
   };
-  if (!options.estimate.empty()) refuse("--estimate", "errors are estimated for");
-  if (!options.against.empty()) refuse("--against", "meshes are refined for");
-  if (options.sleep) refuse("--sleep", "elements sleep in");
+  const auto refuse_motion = [&](const char* option, const char* what) {
+    refuse(option, fmt::format("'{}' is a dynamic case; {} quasi-static cases", settings.name, what));
+  };
+  if (!settings.quasi_static) {
+    if (!options.estimate.empty()) refuse_motion("--estimate", "errors are estimated for");
+    if (!options.against.empty()) refuse_motion("--against", "meshes are refined for");
+    if (options.sleep) refuse_motion("--sleep", "elements sleep in");
+  }
+  if (!options.estimate.empty() && remember_path(scene.forces)) {
+    refuse("--estimate", "friction depends on the path; allowed: cases without friction");
+  }
+  const bool refines = options.estimate == "truth" || !options.against.empty();
+  if (refines && movable_of(scene.forces).size() < contacts_of(scene.forces).size()) {
+    refuse(options.against.empty() ? "--estimate truth" : "--against truth",
+           "refined meshes do not know which points of a [[contact]] touch; allowed: cases without one");
+  }
 }
 
 void require_places(const RunOptions& options, const CaseSettings& settings) {

@@ -48,8 +48,9 @@ MethodChoice choose_method(const RunOptions& options, const Given& given, const 
 /// Throws InputError for options that exclude each other.
 void require_sensible(const RunOptions& options);
 
-/// Throws InputError for options that are for quasi-static cases only.
-void require_quasi_static(const RunOptions& options, const CaseSettings& settings);
+/// Throws InputError for options that do not support the case: those for quasi-static cases only, and
+/// estimates with contact that refined meshes or their linear step do not know.
+void require_supported(const RunOptions& options, const Scene& scene);
 
 /// Throws InputError unless the output files can be written; a run never overwrites its own input.
 void require_places(const RunOptions& options, const CaseSettings& settings);

@@ -155,7 +155,9 @@ void print_method(const Model& model) {
 void HistoryReport::take(const HistoryRow& row) {
   if (!started_) first_ = last_ = row;
   started_ = true;
-  kinetic_time_ += 0.5 * (last_.kinetic + row.kinetic) * (row.time - last_.time);
+  // Where contact moves nodes, the kinetic energy of a body near rest may be below zero; damping gives none
+  // back.
+  kinetic_time_ += 0.5 * std::max(last_.kinetic + row.kinetic, 0.0) * (row.time - last_.time);
   last_ = row;
   largest_hourglass_ = std::max(largest_hourglass_, row.hourglass);
   largest_strain_ = std::max(largest_strain_, row.strain);

@@ -190,7 +190,7 @@ TEST(Map, names_what_is_wrong) {
   Case description = cantilever();
   description.materials.front().law = Ogden{};
   EXPECT_THROW(require_possible(maps[0], description), InputError);
-  EXPECT_EQ(usual_maps(description).size(), 3u);  // aspect-skew, cycles-load, step-load
+  EXPECT_EQ(usual_maps(description).size(), 3u);     // aspect-skew, cycles-load, step-load
   description.forces.of<Obstacle>().emplace_back();  // it would keep its shape
   EXPECT_THROW(require_possible(parse_map("skew"), description), InputError);
 }

@@ -164,6 +164,15 @@ TEST(StaticFriction, jaws_hold_a_block_with_its_weight) {
   EXPECT_THROW(relax(Model(weak, {"tl-perturbation"}), silent), ComputationError);
 }
 
+/// Without levels, a search may step over what a curve does in between.
+TEST(StaticFriction, needs_levels_for_curves) {
+  Column block = gripped_block(0.1);
+  block.description.relaxation.levels = 0;
+  const Scene scene = block.scene();
+  Observer silent;
+  EXPECT_THROW(relax(Model(scene, {"tl-perturbation"}), silent), InputError);
+}
+
 /// A block on a fixed foot under a rough ball that presses and pulls it sideways.
 Column rubbed_block() {
   Column block({1.0, 1.0, 0.5}, {8, 8, 4}, NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.4});

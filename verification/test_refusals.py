@@ -59,6 +59,8 @@ run column --against truth --accuracy 0 | --accuracy = '0' must be a share
 run bar-wave --against truth --accuracy 1% | 'bar-wave' is a dynamic case
 run column --against truth --accuracy 1% --sleep 1% | leave out --sleep
 run column --against truth --accuracy 1% --checkpoint kept | leave out --checkpoint
+run two-spheres --against truth --accuracy 1% | --against truth: refined meshes & [[contact]]
+run two-spheres --estimate truth | --estimate truth: refined meshes & [[contact]]
 run column --sleep 0 | --sleep = '0' must be a share in (0, 1]
 run column --sleep 1 | --sleep = '1' is ambiguous; for one percent write 1%
 run column --sleep 120% | --sleep = '120%' must be a share in (0, 1]

@@ -95,6 +95,16 @@ void require_static_contact(const Scene& scene) {
         fmt::format("{}: [[{}]] has no static equilibrium: {}; allowed: a dynamic case, or leave that out",
                     file, contact->traits().name, reason));
   }
+  const auto bends = [](const LoadCurve& curve) {
+    return !curve.formula.text.empty() || curve.times.size() > 1;
+  };
+  if (remember_path(scene.forces) && scene.settings.relaxation.levels == 0 &&
+      std::ranges::any_of(scene.curves, bends)) {
+    throw InputError(
+        fmt::format("{}: [relaxation] levels is needed: friction at rest follows the load, and a load or the "
+                    "friction has a curve; allowed: enough equal levels to follow it, such as levels = 20",
+                    file));
+  }
   if (!scene.coarser.empty() && movable_of(scene.forces).size() < contacts.size()) {
     throw InputError(
         fmt::format("{}: [[contact]] has no static equilibrium on a mesh with [[refine]]: coarser meshes do "

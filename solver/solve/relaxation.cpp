@@ -336,7 +336,9 @@ class Search {
         fmt::format("no static equilibrium found even with tiny increments of the load; {}{}; remedy: impose "
                     "less, or refine the mesh",
                     where,
-                    remember_path(model_.scene().forces) ? "; a body that slips everywhere has none" : ""),
+                    remember_path(model_.scene().forces)
+                        ? "; or friction cannot hold the body, or a level of the load is too large"
+                        : ""),
         Breakdown::no_balance);
   }
 
