@@ -48,8 +48,8 @@ MethodChoice choose_method(const RunOptions& options, const Given& given, const 
 /// Throws InputError for options that exclude each other.
 void require_sensible(const RunOptions& options);
 
-/// Throws InputError for options that do not support the case: those for quasi-static cases only, and
-/// estimates with contact that refined meshes or their linear step do not know.
+/// Throws InputError for options that the case does not support: those for quasi-static cases if it is a
+/// motion, estimates if it has friction, and refined meshes if it has a [[contact]].
 void require_supported(const RunOptions& options, const Scene& scene);
 
 /// Throws InputError unless the output files can be written; a run never overwrites its own input.

@@ -16,8 +16,7 @@ foreach(target sandglass_packed sandglass_scalar)
   target_link_libraries(${target} PRIVATE fmt::fmt OpenMP::OpenMP_CXX)
 endforeach()
 precompile_headers(sandglass_packed <assembly/kernels.hpp>)
-target_precompile_headers(sandglass_scalar REUSE_FROM sandglass_packed)
-target_compile_options(sandglass_scalar PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+reuse_precompiled_headers(sandglass_scalar sandglass_packed)
 target_sources(sandglass_library PRIVATE $<TARGET_OBJECTS:sandglass_packed>)
 
 # The laws that kernels call, for a number type and its header; a further argument is the type of their parameters.

@@ -10,6 +10,7 @@
 #include "solve/relaxation.hpp"
 #include "support/allocations.hpp"
 #include "support/case_text.hpp"
+#include "support/field_of.hpp"
 #include "support/kept_run.hpp"
 #include "support/obstacles.hpp"
 #include "support/random_hexahedra.hpp"
@@ -460,6 +461,29 @@ TEST(Contact, is_part_of_a_simulation) {
   EXPECT_NEAR(simulation.reaction("plate")[2], -at_rest, 1e-6 * at_rest);
   simulation.advance(0.5);
   EXPECT_NEAR(simulation.reaction("plate")[2], -at_rest, 0.02 * at_rest);
+}
+
+/// A simulation of a static case moves as that of a dynamic one: the forces of static equilibrium limit no
+/// step, and push by a penalty whatever the method.
+TEST(Contact, moves_in_a_simulation_of_a_static_case) {
+  const TemporaryFolder folder;
+  for (const std::string method : {"penalty", "kinematic"}) {
+    const auto after = [&](const std::string& answer) {
+      const auto path = folder.write(
+          answer + method + ".toml",
+          replaced(box_case("pressed", "[1.0, 1.0, 1.0]", "[2, 2, 2]"), "quasi-static", answer) +
+              "[sets]\nfoot = { z = [0.0, 0.0] }\ntop = { z = [1.0, 1.0] }\n\n[[displacement]]\nset = "
+              "\"foot\"\nvalue = [0.0, 0.0, 0.0]\n\n[[obstacle]]\nname = \"plate\"\nset = \"top\"\n"
+              "shape = \"plane\"\npoint = [0.0, 0.0, 1.0]\nnormal = [0.0, 0.0, -1.0]\ndisplacement = "
+              "[0.0, 0.0, -0.1]\nmethod = \"" +
+              method + "\"\n" + (answer == "dynamic" ? "\n[dynamics]\nduration = 1.0\n" : ""));
+      Simulation<double> simulation(path, {.damping = 20.0});
+      simulation.impose(1.0);
+      simulation.advance(1.0);
+      return field_of(simulation);
+    };
+    EXPECT_EQ(after("quasi-static"), after("dynamic")) << method;
+  }
 }
 
 }  // namespace

@@ -227,7 +227,7 @@ TEST(RestingPair, moves_as_in_a_motion) {
   bodies.description.dynamics = {.duration = 1.0, .damping = 5.0};
   Scene moving = bodies.scene();
   moving.settings.quasi_static = false;
-  moving.forces = in_motion(std::move(moving.forces));
+  moving = in_motion(std::move(moving));
   bodies.description.quasi_static = false;
   const Scene dynamic = bodies.scene();
   const auto end = [](const Scene& scene) {

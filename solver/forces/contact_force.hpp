@@ -78,7 +78,7 @@ constexpr double deep = 0.8;
 /// frequency, twice in the mean, of 0.9, 1.015 times, of 0.6, 1.001 times.
 constexpr double rate_of_one_sided = 9.0;
 
-/// How a point touches at rest, in its rows; without friction it sticks.
+/// How a point touches in static equilibrium, in its rows; without friction it sticks.
 constexpr double not_at_all = 0.0, sticking = 1.0, slipping = 2.0;
 
 constexpr std::string_view path_of_friction = "friction depends on the path";
@@ -111,6 +111,28 @@ inline void add_with_friction(Spring spring, double stiffness, const Vector& nor
     spring.root = root_of(stiffness, t);
     springs.push_back(spring);
   }
+}
+
+/// Adds the hold of a point (its nodes and weights) along a normal, with friction also along the surface.
+inline void hold_point(const std::vector<Tie::Share>& mean_of, const Vector& normal, bool friction,
+                       std::vector<Hold>& holds) {
+  holds.push_back({mean_of, normal});
+  if (!friction) return;
+  for (const Vector& t : tangents_of(normal)) holds.push_back({mean_of, t});
+}
+
+/// The part along a surface of the way (m) of a point to where it touches with a gap (m); if the gap was
+/// positive before, only since they met.
+inline Vector way_along(const Vector& way, const Vector& normal, double gap, double gap_before) {
+  const double share = gap_before > 0.0 ? std::clamp(gap / (gap - gap_before), 0.0, 1.0) : 1.0;
+  return sum({}, share, sum(way, -dot(way, normal), normal));
+}
+
+/// The potential per stiffness (m^2) of a spring along a surface that would be extended by `size` (m), of
+/// which friction under constant pressure leaves `most`.
+inline double rubbed(double size, double most) {
+  const double held = std::min(size, most);
+  return held * (size - 0.5 * held);
 }
 
 /// Half the square of an extension, m^2: the energy that is lost per stiffness where a spring lets go.

@@ -142,8 +142,8 @@ std::shared_ptr<ObstacleContact> make_penalty_contact(std::vector<TouchingNode> 
                                                       const Obstacle& obstacle, const ObstacleShape& shape,
                                                       const ObstacleCurves& curves, const Vector& start);
 
-/// At rest, by a penalty. Friction is that of a penalty whose nodes remember where they stick from one load
-/// level to the next, not from one evaluation to the next.
+/// In static equilibrium, by a penalty. With friction, nodes remember where they stick from one load level to
+/// the next, not from one evaluation to the next.
 std::shared_ptr<ObstacleContact> make_resting_contact(std::vector<TouchingNode> nodes,
                                                       const Obstacle& obstacle, const ObstacleShape& shape,
                                                       const ObstacleCurves& curves, const Vector& start);

@@ -7,6 +7,8 @@ namespace sandglass {
 
 namespace {
 
+constexpr std::string_view in_motions = "it acts in motions";
+
 /// It keeps a row for each node: with friction its anchor, m; then whether it touches. With friction also a
 /// row with the extension of its spring, m.
 class PenaltyContact final : public ObstacleContact {
@@ -83,7 +85,7 @@ class PenaltyContact final : public ObstacleContact {
     of_node[0][3] = 0.0;
     if (!rubs()) return;
     Row<double>& stretch = of_node[1];
-    for (std::size_t i = 0; i < 3; ++i) memory.sums[0] += 0.5 * stiffness * stretch[i] * stretch[i];
+    memory.sums[0] += stiffness * lost(stretch);
     stretch = {};
   }
 };
@@ -95,7 +97,7 @@ std::shared_ptr<ObstacleContact> make_penalty_contact(std::vector<TouchingNode> 
                                                       const ObstacleCurves& curves, const Vector& start) {
   return std::make_shared<PenaltyContact>(
       std::move(nodes), obstacle, shape, curves, start,
-      ForceTraits{Obstacle::name, false, obstacle.friction > 0.0, path_of_friction});
+      ForceTraits{Obstacle::name, false, obstacle.friction > 0.0, in_motions});
 }
 
 }  // namespace sandglass

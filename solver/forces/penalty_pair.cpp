@@ -48,9 +48,7 @@ class PenaltyPair final : public SurfacePair {
     for_each_touch(u, memory, use, [&](Row<double>* remembered) {
       share_of_depth(0.0, remembered[0][strength], remembered, memory);
       if (contact_.friction == 0.0) return;
-      const Row<double>& stretch = remembered[3];
-      for (std::size_t i = 0; i < 3; ++i)
-        memory.sums[0] += 0.5 * remembered[0][strength] * stretch[i] * stretch[i];
+      memory.sums[0] += remembered[0][strength] * lost(remembered[3]);
     });
   }
 

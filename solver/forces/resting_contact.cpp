@@ -61,9 +61,8 @@ class RestingContact final : public ObstacleContact {
       const double constant = of_node[0][2], depth = std::max(constant - gap.distance, 0.0);
       sum += 0.5 * nodes_[k].stiffness * (depth * depth - constant * constant);
       if (!rubs() || depth == 0.0) return;
-      const double size = length(extension(k, x, gap, of_node)),
-                   held = std::min(size, most_extension(gap, of_node));
-      sum += nodes_[k].stiffness * held * (size - 0.5 * held);
+      const double size = length(extension(k, x, gap, of_node));
+      sum += nodes_[k].stiffness * rubbed(size, most_extension(gap, of_node));
     });
   }
 
@@ -153,10 +152,7 @@ class RestingContact final : public ObstacleContact {
     for_each_gap(start_, NodalRows(undeformed.data(), places),
                  [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
                    if (gap.distance > 0.0) return;
-                   holds.push_back({{{nodes_[k].node, 1.0}}, gap.normal});
-                   if (!rubs()) return;
-                   for (const Vector& t : tangents_of(gap.normal))
-                     holds.push_back({{{nodes_[k].node, 1.0}}, t});
+                   hold_point({{nodes_[k].node, 1.0}}, gap.normal, rubs(), holds);
                  });
   }
 
@@ -183,10 +179,7 @@ class RestingContact final : public ObstacleContact {
   Vector extension(std::size_t k, const Vector& x, const Gap& gap, const Row<double>* of_node) const {
     const Row<double>& from = of_node[1];
     const Vector place = sum(undeformed(k), 1.0, {from[0], from[1], from[2]});
-    const Vector way = difference(x, place);
-    const double before = gap_at(place).distance;
-    const double share = before > 0.0 ? std::clamp(gap.distance / (gap.distance - before), 0.0, 1.0) : 1.0;
-    return sum({}, share, sum(way, -dot(way, gap.normal), gap.normal));
+    return way_along(difference(x, place), gap.normal, gap.distance, gap_at(place).distance);
   }
 
   /// The largest extension (m) that friction allows.

@@ -67,9 +67,8 @@ class RestingPair final : public SurfacePair {
     fix_contact(false, rows.data());
     ContactMemory copy(rows.data());
     for_each_resting(friction(factors), u, copy, 0.0, [&](const Resting& one) {
-      const double depth = one.constant - one.plane.gap, size = length(one.along),
-                   held = std::min(size, one.most);
-      sum += one.stiffness * (0.5 * depth * depth + held * (size - 0.5 * held));
+      const double depth = one.constant - one.plane.gap;
+      sum += one.stiffness * (0.5 * depth * depth + rubbed(length(one.along), one.most));
     });
     for_each_point(copy, [&](const Side& side, std::size_t k, Row<double>* of_point) {
       const double constant = of_point[1][constant_depth];
@@ -102,11 +101,9 @@ class RestingPair final : public SurfacePair {
     undeformed([&](NodalRows u, Row<double>* rows) {
       ContactMemory memory(rows);
       for_each_resting(0.0, u, memory, just_fits * given_.reach, [&](const Resting& one) {
-        Hold hold{{}, one.plane.normal};
-        for_each_node(one, [&](int node, double weight) { hold.mean_of.push_back({node, weight}); });
-        holds.push_back(hold);
-        if (!rubs()) return;
-        for (const Vector& t : tangents_of(one.plane.normal)) holds.push_back({hold.mean_of, t});
+        std::vector<Tie::Share> mean_of;
+        for_each_node(one, [&](int node, double weight) { mean_of.push_back({node, weight}); });
+        hold_point(mean_of, one.plane.normal, rubs(), holds);
       });
     });
   }
@@ -197,11 +194,8 @@ class RestingPair final : public SurfacePair {
     const auto face = static_cast<int>(of_point[place][face_of_place]) - 1;
     if (face < 0) return {};
     const MovingSurface& onto = surfaces_[side.onto];
-    const Vector from = MovingSurface::position(onto.corners(face), of_point[weights_of_place], of_onto),
-                 way = difference(x, from);
-    const double before = of_point[place][gap_before];
-    const double share = before > 0.0 ? std::clamp(plane.gap / (plane.gap - before), 0.0, 1.0) : 1.0;
-    return sum({}, share, sum(way, -dot(way, plane.normal), plane.normal));
+    const Vector from = MovingSurface::position(onto.corners(face), of_point[weights_of_place], of_onto);
+    return way_along(difference(x, from), plane.normal, plane.gap, of_point[place][gap_before]);
   }
 
   /// Remembers the place of each point on the other surface from which it slips in the next load level.

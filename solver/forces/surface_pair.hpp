@@ -21,8 +21,8 @@ struct SurfacesOfPair {
 
 class SurfacePair;
 
-/// A pair of motions at rest: without friction, between two surfaces. Points that touch are pushed along the
-/// normal of a triangle of the face.
+/// A pair of motions in static equilibrium, between two surfaces. Points that touch are pushed along the
+/// normal of a triangle of the face, and rub.
 std::shared_ptr<const BodyForce> make_resting_pair(std::shared_ptr<const SurfacePair> pair);
 
 /// Points of a surface against faces of the other, and the other way round, or of a surface against its own

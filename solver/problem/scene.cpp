@@ -110,6 +110,11 @@ Scene with_load(Scene scene, const std::vector<double>& imposed, double time, do
   return scene;
 }
 
+Scene in_motion(Scene scene) {
+  scene.forces = in_motion(std::move(scene.forces));
+  return scene;
+}
+
 Scene scaled(Scene scene, double factor) {
   scene.case_hash.clear();
   for (Constraint& constraint : scene.constraints) constraint.path.share[0] *= factor;

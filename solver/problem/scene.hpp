@@ -69,6 +69,9 @@ Scene on_part(const Scene& whole, const MeshPart& part);
 /// may move.
 Scene with_load(Scene scene, const std::vector<double>& imposed, double time, double load_factor);
 
+/// The scene with the forces of contact in motions, also if its case is static.
+Scene in_motion(Scene scene);
+
 /// The scene with imposed displacements, angles, forces and initial velocities multiplied by a factor.
 Scene scaled(Scene scene, double factor);
 

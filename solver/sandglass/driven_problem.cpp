@@ -49,12 +49,6 @@ MethodChoice choice_of(const CaseSettings& of_case, const SimulationSettings& se
   return choice;
 }
 
-/// A scene with the forces of contact in motions, also if its case is static.
-Scene in_motion(Scene scene) {
-  scene.forces = in_motion(std::move(scene.forces));
-  return scene;
-}
-
 }  // namespace
 
 DrivenProblem::DrivenProblem(Scene scene, const SimulationSettings& settings, Precision precision)

@@ -28,7 +28,8 @@ void require_healthy(const Body<Real>& body, long step);
 /// Throws ComputationError if a node may have passed through a surface that it touched.
 void require_not_passed(const Touch& touch, const NodalField& points, long step);
 
-/// Throws InputError if a contact is supported in motions only.
+/// Throws InputError if a contact is supported in motions only, or if friction would follow a curve in levels
+/// that the user has not chosen.
 void require_static_contact(const Scene& scene);
 
 /// Throws ComputationError if a surface that may touch lies deep inside another element at displacements u

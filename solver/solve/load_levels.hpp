@@ -175,8 +175,8 @@ class LoadLevels {
 
   /// Whether a search below the full load is accurate enough for predictions. Forces that depend on the path
   /// remember every level, friction more than a residual of 0.1, and the first of equal levels determines
-  /// their number. After many failures, a
-  /// level that is farther from equilibrium than the increment of the load would mislead the next one.
+  /// their number. After many failures, a level that is farther from equilibrium than the increment of the
+  /// load would mislead the next one.
   bool far_enough(const Equilibrium<Real>& search) const {
     constexpr double residual = 0.1, reduction = 0.03, residual_of_first = 1e-3;
     if (rubs_) return search.residual() < residual_of_first && search.contact_agrees();

@@ -9,7 +9,6 @@
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
-#include "forces/contact_force.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/stable_step.hpp"
 
@@ -105,11 +104,10 @@ double crossing_time(const Scene& scene) {
 }
 
 Scene in_own_motion(const Scene& scene) {
-  Scene moving = scene;
-  if (!scene.settings.quasi_static) return moving;
+  if (!scene.settings.quasi_static) return scene;
+  Scene moving = in_motion(scene);
   const double crossing = crossing_time(scene), duration = own_motion_crossings * crossing;
   moving.settings.quasi_static = false;
-  moving.forces = in_motion(std::move(moving.forces));
   moving.settings.dynamics = {.duration = duration, .damping = own_motion_damping / crossing, .frames = 1};
   for (auto& curve : moving.curves) curve = stretched(std::move(curve), duration);
   return moving;

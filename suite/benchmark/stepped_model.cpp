@@ -107,9 +107,7 @@ class SteppedModelOf final : public SteppedModel {
   static std::optional<Scene> moving(const Scene& scene) {
     const auto changes = [](const ContactForce* contact) { return contact->in_motion() != nullptr; };
     if (std::ranges::none_of(contacts_of(scene.forces), changes)) return std::nullopt;
-    Scene other = scene;
-    other.forces = in_motion(std::move(other.forces));
-    return other;
+    return in_motion(scene);
   }
 
   /// Starts with other levels of the elements instead of the current ones.

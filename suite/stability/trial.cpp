@@ -9,7 +9,6 @@
 #include "choice/variations.hpp"
 #include "comparison/answer.hpp"
 #include "comparison/comparison.hpp"
-#include "forces/contact_force.hpp"
 #include "io/case_file.hpp"
 
 namespace sandglass {
@@ -49,8 +48,8 @@ Scene scene_of(const Trial& trial) {
   Scene scene = scaled(make_scene(description, std::move(mesh), std::move(sets), std::move(element_sets)),
                        trial.noise ? 0.0 : trial.load);
   if (!trial.is_dynamic()) return scene;
+  scene = in_motion(std::move(scene));
   scene.settings.quasi_static = false;
-  scene.forces = in_motion(std::move(scene.forces));
   const double crossing = crossing_time(scene);
   scene.settings.dynamics = {.duration = (trial.noise ? 10.0 : 4.0) * crossing,
                              .ramp_time = 2.0 * crossing,
