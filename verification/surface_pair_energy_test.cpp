@@ -28,19 +28,6 @@ struct Gain {
   }
 };
 
-/// A ball of hexahedra: a cube whose shells are blown up.
-Mesh ball(double radius, int n) {
-  return lattice({n, n, n}, [&](const Vector& s) {
-    Vector x{2.0 * s[0] - 1.0, 2.0 * s[1] - 1.0, 2.0 * s[2] - 1.0};
-    const double shell = std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
-    if (shell == 0.0) return Vector{};
-    const double sphere = radius * shell / length(x), cube = 0.6 * radius;
-    const double round = shell * shell;
-    for (double& one : x) one *= round * sphere + (1.0 - round) * cube;
-    return x;
-  });
-}
-
 /// The lower body is held at its foot, and the upper one falls or slides on it for two seconds.
 void put_under_weight(Case& description, Contact::Method method) {
   description.displacements = {{"foot", {}}};

@@ -5,7 +5,8 @@ namespace sandglass {
 namespace {
 
 /// By how much of its height a triangle extends beyond its edges. Points keep their triangle that far, so
-/// that none alternates between two triangles.
+/// that none alternates between two triangles; but in the answer they would lag behind where they slid. When
+/// the contact is augmented, each chooses the nearest triangle once again.
 constexpr double overhang = 0.1;
 
 /// At rest no step is limited by the stiffness.
@@ -136,10 +137,14 @@ class RestingPair final : public SurfacePair {
       constant = touches ? std::max(of_point[1][depth_now] + constant, 0.0) : 0.0;
       any = any || constant > 0.0;
     });
+    memory.others[0][chooses_again] = any ? 1.0 : 0.0;
     return any;
   }
 
  private:
+  /// What the pair remembers besides: whether the next evaluation that is not fixed chooses triangles again.
+  enum OfRestingPair : std::size_t { chooses_again = 3 };
+
   /// What points remember in their second row.
   enum OfRestingPoint : std::size_t { triangle = 0, contrary = 1, depth_now = 2, constant_depth = 3 };
 
@@ -265,6 +270,7 @@ class RestingPair final : public SurfacePair {
     const double range = std::max(given_.reach, move(u, memory).largest_relative()),
                  way = memory.others[0][way_so_far];
     const bool fixed = memory.sums[3] != 0.0;
+    const bool anew = !fixed && std::exchange(memory.others[0][chooses_again], 0.0) != 0.0;
     memory.sums[2] = 0.0;
     bool fits = false;
     for_each_point(memory, [&](const Side& side, std::size_t k, Row<double>* of_point) {
@@ -280,7 +286,7 @@ class RestingPair final : public SurfacePair {
       auto of_face = static_cast<std::size_t>(of_point[1][triangle]);
       if (touched) plane = onto.plane_at(face, of_face, x, of_onto);
       bool inside = touched && plane.gap <= farthest, moved = false;
-      if (!touched || plane.least < -overhang) {
+      if (!touched || anew || plane.least < -overhang) {
         for (std::size_t s = 0; s < surfaces_.size() && !fits; ++s) surfaces_[s].fit(of_surface(memory, s));
         fits = true;
         const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), range,

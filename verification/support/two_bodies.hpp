@@ -50,6 +50,19 @@ inline Mesh moved(Mesh mesh, const Vector& by) {
   return mesh;
 }
 
+/// A ball of hexahedra: a cube whose shells are blown up.
+inline Mesh ball(double radius, int n) {
+  return lattice({n, n, n}, [&](const Vector& s) {
+    Vector x{2.0 * s[0] - 1.0, 2.0 * s[1] - 1.0, 2.0 * s[2] - 1.0};
+    const double shell = std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
+    if (shell == 0.0) return Vector{};
+    const double sphere = radius * shell / length(x), cube = 0.6 * radius;
+    const double round = shell * shell;
+    for (double& one : x) one *= round * sphere + (1.0 - round) * cube;
+    return x;
+  });
+}
+
 inline constexpr std::array both_methods{Contact::Method::penalty, Contact::Method::kinematic};
 
 /// The contact of the two bodies.
