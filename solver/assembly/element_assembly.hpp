@@ -242,7 +242,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
                        std::vector<Defects>& defects) const {
     for_each_pack(*layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
       const int* const elements = layout_->elements.data() + at.pack * width;
-      const auto axes = this->axes_of(elements);
+      const auto axes = axes_of_block<Number>(this->axes_, elements);
       const auto squares = squared_defects(u, mobility, at.face, at.material, axes ? &*axes : nullptr);
       for (int lane = 0; lane < width; ++lane) {
         if (elements[lane] < 0) continue;

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "assembly/layout.hpp"
@@ -64,6 +65,22 @@ typename Kernel::template Element<Number> element_block(const Mesh& mesh, const 
     }
   }
   return std::bit_cast<Block>(block);
+}
+
+/// The axes of the elements in the lanes of a block, those of space in spare lanes; none without axes of
+/// elements.
+template <class Number>
+std::optional<MaterialAxes<Number>> axes_of_block(const std::vector<MaterialAxes<double>>& of_elements,
+                                                  const int* elements) {
+  if (of_elements.empty()) return std::nullopt;
+  MaterialAxes<Number> axes;
+  for (int lane = 0; lane < Lanes<Number>::width; ++lane) {
+    const auto own = elements[lane] < 0 ? identity<double>() : of_elements[at(elements[lane])];
+    for (std::size_t n = 0; n < own.entries.size(); ++n) {
+      Lanes<Number>::set(axes.entries[n], lane, static_cast<typename Lanes<Number>::Scalar>(own.entries[n]));
+    }
+  }
+  return axes;
 }
 
 /// The elements of a chunk at one level: the groups `first` to `last` - 1, with the constants of their

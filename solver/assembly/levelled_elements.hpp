@@ -252,20 +252,6 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  /// The axes of the elements in the lanes of a block, spare ones those of space; without axes none.
-  std::optional<MaterialAxes<Number>> axes_of(const int* elements) const {
-    if (axes_.empty()) return std::nullopt;
-    MaterialAxes<Number> axes;
-    for (int lane = 0; lane < width; ++lane) {
-      const auto own =
-          elements[lane] < 0 ? identity<double>() : axes_[static_cast<std::size_t>(elements[lane])];
-      for (std::size_t n = 0; n < 9; ++n) {
-        Lanes<Number>::set(axes.entries[n], lane, static_cast<Real>(own.entries[n]));
-      }
-    }
-    return axes;
-  }
-
   std::shared_ptr<const Layout> layout_;    // of all elements
   std::vector<MaterialAxes<double>> axes_;  // of each element; empty: those of space
   std::vector<Setup> setups_;               // of each material
@@ -343,7 +329,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
         };
         part.blocks.push_back(element_block<KernelOf<Method>, Number>(
             mesh, *part.groups, layout_->node_of_row, group.first_face + k, law_of, setup.settings));
-        if (const auto axes = axes_of(elements)) part.axes.push_back(*axes);
+        if (const auto axes = axes_of_block<Number>(axes_, elements)) part.axes.push_back(*axes);
       }
     }
   }

@@ -12,6 +12,8 @@ namespace sandglass {
 
 namespace {
 
+constexpr std::size_t nodes_of_cell = std::tuple_size_v<Hexahedron>;
+
 /// `what`: "node" or "element".
 void require_number(const Hdf5File& file, const std::string& name, std::string_view what, std::int64_t number,
                     std::size_t count) {
@@ -79,9 +81,9 @@ void write_mesh(const Scene& scene, Hdf5File& file) {
   file.write("/mesh/points", {mesh.points.size(), 3},
              std::span<const double>(mesh.points.front().data(), 3 * mesh.points.size()));
   std::vector<std::int64_t> cells;
-  cells.reserve(8 * mesh.cells.size());
+  cells.reserve(nodes_of_cell * mesh.cells.size());
   for (const auto& cell : mesh.cells) cells.insert(cells.end(), cell.begin(), cell.end());
-  file.write("/mesh/cells", {mesh.cells.size(), 8}, std::span<const std::int64_t>(cells));
+  file.write("/mesh/cells", {mesh.cells.size(), nodes_of_cell}, std::span<const std::int64_t>(cells));
   write_sets(scene.sets, "/mesh/sets", file);
   write_sets(scene.element_sets, "/mesh/element_sets", file);
   write_ties(scene.ties, file);
@@ -126,7 +128,7 @@ NodalField read_nodal_field(const Hdf5File& file, const std::string& name, std::
 MeshWithSets read_mesh_file(const std::filesystem::path& path) {
   const auto file = Hdf5File::open(path);
   const auto cells = file.read<std::int64_t>("/mesh/cells");
-  if (cells.shape.size() != 2 || cells.shape[1] != 8 || cells.shape[0] == 0) {
+  if (cells.shape.size() != 2 || cells.shape[1] != nodes_of_cell || cells.shape[0] == 0) {
     throw InputError(fmt::format(
         "{}: dataset '/mesh/cells' has shape {}; it must be [elements, 8], hexahedra in VTK order",
         path.string(), cells.shape));
@@ -144,7 +146,7 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
   result.mesh.cells.resize(cells.shape[0]);
   for (std::size_t k = 0; k < cells.entries.size(); ++k) {
     require_number(file, "/mesh/cells", "node", cells.entries[k], n_nodes);
-    result.mesh.cells[k / 8][k % 8] = static_cast<int>(cells.entries[k]);
+    result.mesh.cells[k / nodes_of_cell][k % nodes_of_cell] = static_cast<int>(cells.entries[k]);
   }
   std::vector<bool> used(n_nodes, false);
   for (const auto node : cells.entries) used[static_cast<std::size_t>(node)] = true;

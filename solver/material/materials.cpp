@@ -1,5 +1,8 @@
 #include "material/materials.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace sandglass {
 
 namespace {
@@ -73,6 +76,13 @@ std::vector<double> lame_lambdas(const Materials& materials) {
   return by_material(materials, [](const Material& material) {
     return std::visit([](const auto& law) { return lame_lambda(law); }, material.law);
   });
+}
+
+double largest_lambda_over_mu(const Materials& materials) {
+  const std::vector<double> lambdas = lame_lambdas(materials), moduli = shear_moduli(materials);
+  double largest = -INFINITY;
+  for (std::size_t m = 0; m < moduli.size(); ++m) largest = std::max(largest, lambdas[m] / moduli[m]);
+  return largest;
 }
 
 }  // namespace sandglass

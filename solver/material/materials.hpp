@@ -57,4 +57,7 @@ std::vector<double> shear_moduli(const Materials& materials);
 /// Lame's first parameters of the undeformed materials, Pa.
 std::vector<double> lame_lambdas(const Materials& materials);
 
+/// The largest lambda / mu of the undeformed materials.
+double largest_lambda_over_mu(const Materials& materials);
+
 }  // namespace sandglass

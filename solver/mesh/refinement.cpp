@@ -15,7 +15,7 @@ namespace {
 /// coordinate -1, 0 or 1) in every coordinate that is not zero.
 std::vector<std::size_t> parents_of(const std::array<int, 3>& point) {
   std::vector<std::size_t> corners;
-  for (int I = 0; I < 8; ++I) {
+  for (int I = 0; I < corner_signs.rows; ++I) {
     bool agrees = true;
     for (int i = 0; i < 3; ++i) {
       const int x = point[at(i)];
@@ -127,9 +127,9 @@ void RefinedMesh::split(std::vector<bool> marked) {
     }
     std::array<int, 27> nodes{};
     for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = node_at(cell, lattice()[k]);
-    for (int child = 0; child < 8; ++child) {
+    for (int child = 0; child < corner_signs.rows; ++child) {
       Hexahedron part;
-      for (int I = 0; I < 8; ++I) {
+      for (int I = 0; I < corner_signs.rows; ++I) {
         int k = 0;
         for (int i = 2; i >= 0; --i)
           k = 3 * k + 1 + static_cast<int>(corner_signs(I, i) + corner_signs(child, i)) / 2;

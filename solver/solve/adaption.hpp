@@ -54,7 +54,7 @@ class AdaptionSchedule {
 /// nodes by at most half the requested accuracy. The displacement of a node is estimated with its neighbours
 /// fixed, as the force over mu times the integral of |grad N|^2; errors of neighbouring elements and the
 /// motion of the rest of the body about double it in most bodies, hence the half. If they add up to more, as
-/// along a beam, `tighten` reduces the share. Does nothing for other methods.
+/// along a beam, `promote_for_the_whole` reduces the share. Does nothing for other methods.
 template <class Real>
 class Adaption {
  public:
@@ -71,22 +71,28 @@ class Adaption {
   /// the previous levels until they are evaluated again.
   Adaptation apply(Body<Real>& body, Demotion demotion);
 
-  /// Takes a measured error (m) of an answer with the current levels; the more it exceeds the accuracy, the
-  /// less error elements are allowed from then on. Returns whether it does.
-  bool tighten(const Body<Real>& body, double error);
+  /// If the estimated error of a static answer as a whole exceeds the accuracy, allows elements less error
+  /// and promotes them. Returns whether it did.
+  bool promote_for_the_whole(Body<Real>& body);
+
+  /// Evaluations of the forces for estimates so far.
+  long evaluations_of_estimates() const { return evaluations_of_estimates_; }
 
   /// The processor time that the calling thread spent on it so far, s.
   double seconds() const { return seconds_; }
 
  private:
   double asked(const Body<Real>& body) const;
+  bool tighten(const Body<Real>& body, double error);
 
+  const Model& model_;
   bool active_;
   double accuracy_;
   double imposed_;       // m, largest
   double share_ = 0.5;   // of the accuracy, allowed to an element
   Rows<Real> mobility_;  // m/N, zero on constrained components
   double seconds_ = 0.0;
+  long evaluations_of_estimates_ = 0;
 };
 
 extern template class Adaption<double>;

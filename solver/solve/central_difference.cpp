@@ -165,8 +165,7 @@ class CentralDifference {
     for (const std::size_t k : body_.constraints().own()) {
       const ImposedPath& path = constraints[k].path;
       const double force = constraint_force(k);
-      for (std::size_t i = 0; i < 3; ++i)
-        works_[k] += 0.5 * (reactions_[k] + force) * moved_[path.angle][i] * path.share[i];
+      works_[k] += 0.5 * (reactions_[k] + force) * path.along(moved_[path.angle]);
       reactions_[k] = force;
     }
     body_.add_work_of_loads();

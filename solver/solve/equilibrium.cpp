@@ -6,6 +6,7 @@
 
 #include "math/row_loops.hpp"
 #include "solve/health.hpp"
+#include "solve/linearized.hpp"
 #include "solve/newton_step.hpp"
 
 namespace sandglass {
@@ -39,10 +40,6 @@ constexpr double close_enough = 1e-4;
 /// some searches end that would recover with full effort, or with forces that depend on the path, which
 /// remembers every detour.
 constexpr double most_growth = 1.5, most_growth_of_the_last_try = 3.0;
-
-/// In slender bodies the residual of an unfinished linear answer may have grown although the answer is still
-/// a good start; beyond this growth it is not.
-constexpr double most_extended_growth = 10.0;
 
 /// The nodes that touch obstacles are updated when the norm has fallen to this share. Where that does not
 /// leave fewer nodes whose contact is contrary, the next update waits for a tenth of that, until the share is
@@ -372,41 +369,13 @@ double Equilibrium<Real>::extend(double load, double most) {
     mixed_.linearize();
     body().state().u = imposed;
   }
-  const MixedVector zero = mixed_.multigrid().elements().zero();
-  MixedVector x = zero, forces = zero;
+  MixedVector x = mixed_.multigrid().elements().zero(), loads = x;
   for (std::size_t row = 0; row < before.size(); ++row) {
     for (std::size_t i = 0; i < 3; ++i)
       x.u[row][i] = static_cast<float>(body().state().u[row][i] - before[row][i]);
   }
-  MixedVector loads = zero;
   loads.u = rounded_rows<float>(change);
-  // The linear problem, by accelerated cycles.
-  const auto evaluate = [&] {
-    mixed_.multigrid().elements().apply(x, forces);
-    reduced_ = forces;
-    add(-1.0f, loads, reduced_, blocks());
-    mixed_.weigh(reduced_);
-    return std::sqrt(dot(reduced_, reduced_, blocks()));
-  };
-  acceleration_.clear();
-  const double first = evaluate();
-  constexpr int most_cycles = 30;
-  double norm = first, least = first;
-  MixedVector best = x;
-  for (int k = 0; k < most_cycles && norm > 0.1 * first; ++k) {
-    step_ = correction_ = zero;
-    acceleration_.combine(reduced_, step_);
-    mixed_.correct(reduced_, correction_);
-    add(1.0f, correction_, step_, blocks());
-    add(1.0f, step_, x, blocks());
-    acceleration_.moved(step_);
-    norm = evaluate();
-    if (norm < least) {
-      least = norm;
-      best = x;
-    }
-  }
-  if (!(norm < most_extended_growth * first)) x = best;  // the cycles diverged
+  solve_linearized(mixed_, loads, x);
   const double gradient = mixed_.multigrid().elements().largest_gradient(x.u);
   const double share =
       std::min(mixed_.is_linear() ? 1.0 : std::min(1.0, most / gradient), body().share_in_reach(x.u));

@@ -5,8 +5,6 @@
 #include <limits>
 
 #include "assembly/method_entry.hpp"
-#include "element/one_point.hpp"
-#include "material/stiffening.hpp"
 #include "math/row_loops.hpp"
 #include "solve/model_moduli.hpp"
 
@@ -62,6 +60,7 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       mesh_(model.scene().mesh),
       materials_(model.scene().materials),
       moduli_(model_moduli(model)),
+      stiffening_(model),
       linear_(method_named(model.choice().method).is_linear),
       pressure_varies_(method_named(model.choice().method).pressure_varies),
       free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),
@@ -75,20 +74,13 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       weights_(multigrid_.elements()),
       residuals_(multigrid_.elements().zero()),
       scratch_(residuals_) {
-  double amplification = 1.0;  // of the rounding of J - 1
-  for (const ModelModuli& moduli : moduli_) {
-    lambdas_.push_back(moduli.lambda);
-    amplification = std::max(amplification, moduli.lambda / moduli.mu);
-  }
-  laws_ = by_material(materials_, [&](const Material& material) {
-    const bool known = !linear_ && splits_volume(material.law);
-    return known ? std::optional(elastic_law(kernel_law(material))) : std::nullopt;
-  });
+  for (const ModelModuli& moduli : moduli_) lambdas_.push_back(moduli.lambda);
   linearize();
   double stiffest = 0.0;
   for (const Row<float>& k : multigrid_.elements().stiffness()) {
     for (std::size_t i = 0; i < 3; ++i) stiffest = std::max(stiffest, static_cast<double>(k[i]));
   }
+  const double amplification = std::max(1.0, largest_lambda_over_mu(materials_));  // of the rounding of J - 1
   unfelt_ = std::min(rounding<Real> * amplification, most_rounding) * stiffest;
 }
 
@@ -139,30 +131,8 @@ void MixedBody<Real>::update_multigrid() {
   const double most = may_touch() ? most_lambda_over_mu_in_contact : most_lambda_over_mu;
   for (std::size_t m = 0; m < moduli.size(); ++m)
     moduli[m].lambda = std::min(lambdas[m], most * moduli[m].mu);
-  multigrid_.update(linearized_at_, moduli, stiffening_of_laws());
+  multigrid_.update(linearized_at_, moduli, stiffening_.by_cell(linearized_at_, body_.layout()));
   linearized_ = true;
-}
-
-template <class Real>
-std::vector<float> MixedBody<Real>::stiffening_of_laws() const {
-  const ElementLevel& level = multigrid_.elements();
-  const Layout& layout = level.layout();
-  std::vector<float> by_cell(layout.elements.size(), 1.0f);
-  if (!may_stiffen()) return by_cell;
-  for_each_element([&](std::size_t e, std::size_t c) {
-    const auto& law = laws_[materials_.of(e)];
-    if (!law) return;
-    const auto element = OnePoint::geometry(to_modes(gather(mesh_.points, mesh_.cells[e])));
-    NodalVectors<double> u;
-    for (int I = 0; I < u.rows; ++I) {
-      const auto& row = linearized_at_[at(layout.row_of_node[at(mesh_.cells[e][at(I)])])];
-      for (int i = 0; i < 3; ++i) u(I, i) = row[at(i)];
-    }
-    by_cell[c] = static_cast<float>(stiffening(*law, OnePoint::mean_gradient(to_modes(u), element),
-                                               materials_.axes.empty() ? nullptr : &materials_.axes[e]));
-  });
-  layout.gather_cells(by_cell.data());
-  return by_cell;
 }
 
 template <class Real>

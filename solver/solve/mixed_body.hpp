@@ -6,6 +6,7 @@
 #include "multigrid/saddle_multigrid.hpp"
 #include "solve/body.hpp"
 #include "solve/drag.hpp"
+#include "solve/law_stiffening.hpp"
 #include "solve/residual_weights.hpp"
 
 namespace sandglass {
@@ -37,9 +38,7 @@ class MixedBody {
   bool pressure_varies() const { return pressure_varies_; }
 
   /// Whether the stiffening of a law is known.
-  bool may_stiffen() const {
-    return std::ranges::any_of(laws_, [](const auto& law) { return law.has_value(); });
-  }
+  bool may_stiffen() const { return stiffening_.is_known(); }
 
   /// Adapts the multigrid method to the present configuration, unless it has hardly changed since the last
   /// time; no element may be inverted.
@@ -172,9 +171,6 @@ class MixedBody {
   template <class Term>
   double sum_over_components(const Term& term) const;
 
-  /// How much stiffer than undeformed the laws are in the linearized configuration, by cell.
-  std::vector<float> stiffening_of_laws() const;
-
   /// See InternalForce::replace_pressures.
   void replace_pressures(const std::vector<Real>& pressures, const std::vector<double>& lambdas);
 
@@ -205,10 +201,10 @@ class MixedBody {
   Body<Real> body_;
   const Mesh& mesh_;
   const Materials& materials_;
-  std::vector<ModelModuli> moduli_;             // of each material
-  std::vector<double> lambdas_;                 // Pa
-  std::vector<std::optional<CalledLaw>> laws_;  // of each material; none if stiffening is not known
-  double unfelt_ = 0.0;                         // N/m, reactions over displacements that may be rounding
+  std::vector<ModelModuli> moduli_;  // of each material
+  LawStiffening stiffening_;
+  std::vector<double> lambdas_;  // Pa
+  double unfelt_ = 0.0;          // N/m, reactions over displacements that may be rounding
   bool linear_;
   bool pressure_varies_;
   Rows<Real> free_;

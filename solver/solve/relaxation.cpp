@@ -12,7 +12,6 @@
 #include "solve/adaption.hpp"
 #include "solve/condensed_answer.hpp"
 #include "solve/equilibrium.hpp"
-#include "solve/error_estimate.hpp"
 #include "solve/frame.hpp"
 #include "solve/health.hpp"
 #include "solve/load_levels.hpp"
@@ -34,7 +33,7 @@ class Search {
         most_evaluations_(leaves_hourglass_modes(model.choice())
                               ? std::min(few_evaluations, settings_.max_steps)
                               : settings_.max_steps),
-        amplification_(largest_amplification(model.scene().materials)),
+        amplification_(std::max(0.0, largest_lambda_over_mu(model.scene().materials))),
         observer_(observer),
         equilibrium_(model, elements),
         adaption_(model, equilibrium_.body()),
@@ -89,23 +88,12 @@ class Search {
   /// levels that would still change at smaller residuals are corrected at the end.
   static constexpr double moderate_tolerance = 1e-3;
 
-  /// The largest error over its estimate, which is slightly low in slender bodies.
-  static constexpr double largest_over_estimate = 1.1;
-
   /// Elements without stiffness against hourglass modes have a stable equilibrium on coarse meshes only; the
   /// search for one ends after this many evaluations.
   static constexpr int few_evaluations = 2000;
 
   /// The largest number of saddles that are left one after another.
   static constexpr int most_saddles = 5;
-
-  /// The largest lambda / mu of the materials.
-  static double largest_amplification(const Materials& materials) {
-    const std::vector<double> lambdas = lame_lambdas(materials), moduli = shear_moduli(materials);
-    double largest = 0.0;
-    for (std::size_t m = 0; m < moduli.size(); ++m) largest = std::max(largest, lambdas[m] / moduli[m]);
-    return largest;
-  }
 
   static constexpr double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
 
@@ -115,7 +103,7 @@ class Search {
     result_.u = body().field(body().state().u);
     require_apart(model_.scene(), result_.u);
     result_.energies = body().energies();
-    result_.steps = equilibrium_.evaluations() + evaluations_of_estimates_;
+    result_.steps = equilibrium_.evaluations() + adaption_.evaluations_of_estimates();
     result_.residual = equilibrium_.residual();
     result_.inverted = !is_healthy(body());
     result_.adaption_seconds = adaption_.seconds();
@@ -277,29 +265,10 @@ class Search {
     lowered_ = true;
     if (changes.promoted + changes.demoted == 0) {
       if (!adaption_.active() || !std::exchange(settled_, true)) return adaption_.active();
-      if (!promote_for_the_whole()) return false;
+      if (!adaption_.promote_for_the_whole(body())) return false;
     }
     equilibrium_.start(load_levels_.effort());
     return true;
-  }
-
-  /// If the error of the whole exceeds the requested accuracy, tightens the elements' share and promotes
-  /// them. Returns whether it did.
-  bool promote_for_the_whole() {
-    double error = 0.0;
-    try {
-      const ErrorEstimate estimate = estimate_error(model_, body().field(body().state().u));
-      error = largest_over_estimate * estimate.largest;
-      evaluations_of_estimates_ += estimate.evaluations;
-    } catch (const ComputationError&) {
-      return false;  // nothing to compare with
-    }
-    constexpr int most_rounds = 10;
-    for (int round = 0; round < most_rounds && adaption_.tighten(body(), error); ++round) {
-      if (adaption_.apply(body(), Demotion::never).promoted > 0) return true;
-      error *= 1.5;  // no element was close to its limit
-    }
-    return false;  // accurate enough, or nothing more can be done
   }
 
   void finish_load_level() {
@@ -369,12 +338,9 @@ class Search {
     const std::vector<double> forces = body().constraints().of_all(body().reactions());
     for (std::size_t k = 0; k < constraints.size(); ++k) {
       const ImposedPath& path = constraints[k].path;
-      const double force = forces[k];
-      for (std::size_t i = 0; i < 3; ++i) {
-        work_ += 0.5 * (reactions_[k] + force) * moved[path.angle][i] * path.share[i];
-      }
-      reactions_[k] = force;
+      work_ += 0.5 * (reactions_[k] + forces[k]) * path.along(moved[path.angle]);
     }
+    reactions_ = forces;
     body().add_work_of_loads();
   }
 
@@ -402,11 +368,10 @@ class Search {
   std::vector<double> reactions_;
   double work_ = 0.0;
   long first_evaluation_ = 0;  // of this load level
-  long evaluations_of_estimates_ = 0;
-  long next_check_;         // evaluations
-  bool lowered_ = false;    // whether elements could be demoted at the full load
-  bool settled_ = false;    // whether levels no longer changed at a moderate residual
-  bool augmented_ = false;  // whether obstacles have been
+  long next_check_;            // evaluations
+  bool lowered_ = false;       // whether elements could be demoted at the full load
+  bool settled_ = false;       // whether levels no longer changed at a moderate residual
+  bool augmented_ = false;     // whether obstacles have been
   bool ended_ = false;
 };
 

@@ -61,7 +61,7 @@ HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u) {
     const Matrix<double, 4, 3> q = transpose(hourglass_shape_vectors(X, mean.h)) * v;
     // An eighth of each: Gamma^T Gamma = 8 I, so sum_I |v_I|^2 is an eighth of the squares of all modes.
     hourglass += mean.volume * double_dot(q, q) / 64.0;
-    total += mean.volume * double_dot(v, v) / 8.0;
+    total += share_of_node(mean.volume) * double_dot(v, v);
     volume += mean.volume;
   }
   return {std::sqrt(hourglass / volume), std::sqrt(total / volume)};

@@ -111,7 +111,7 @@ std::vector<double> error_indicators(const Scene& scene, const NodalField& u) {
       const Tensor<double> difference = recovered[scene.materials.of(e)].at_node(node) - gradients[e];
       squares += double_dot(difference, difference);
     }
-    indicators.push_back(volumes[e] * squares / 8.0);
+    indicators.push_back(share_of_node(volumes[e]) * squares);
   }
   return indicators;
 }
