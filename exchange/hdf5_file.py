@@ -9,7 +9,7 @@ import numpy as np
 from common.errors import InputError
 from common.result_file import text_of
 from exchange.decks.contact import Obstacle, Pair
-from exchange.decks.problem import Material, Motion, Problem
+from exchange.decks.problem import Material, Motion, Problem, agreed
 from exchange.foreign_mesh import HexMesh
 
 
@@ -81,6 +81,7 @@ def read_problem(path):
 def _keys(kind, group):
     """The fields of an Obstacle or a Pair that a group has, as attributes or datasets."""
     found = {key: text_of(value) for key, value in group.attrs.items()}
+    found = {key: v if isinstance(v, str) else agreed(v) for key, v in found.items()}
     found |= {key: data[...] for key, data in group.items()}
     return {one.name: found[one.name] for one in fields(kind) if one.name in found}
 

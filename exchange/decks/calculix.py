@@ -62,7 +62,10 @@ def deck(problem, element, _):
     for i, material in enumerate(problem.materials, 1):
         lines += _material(i, material, len(problem.materials))
     rigid = rigid_surface.parts(problem)
-    lines += _obstacles(problem, rigid) + _pairs(problem) + _equations(problem.ties)
+    lines += _obstacles(problem, rigid) + _pairs(problem)
+    for one, names in _touching(problem):
+        lines += _touch(one, *names)
+    lines += _equations(problem.ties)
     lines += _amplitude(motion) if motion else []
     increments = SHORTER * motion.steps if motion else MOST_INCREMENTS
     lines.append(f"*STEP, NLGEOM, INC={increments}")
@@ -82,8 +85,8 @@ def deck(problem, element, _):
     # Writes only the last increment, which ccx always does.
     body = f"NSET={OWN}BODY, " if rigid else ""
     lines += [f"*NODE FILE, {body}FREQUENCY={increments}", "U"]
-    for i, _ in enumerate(rigid, 1):
-        lines += [f"*NODE PRINT, NSET={OWN}OBSTACLE{i}, TOTALS=ONLY, FREQUENCY={increments}", "RF"]
+    for _, (slave, master) in _touching(problem):
+        lines += [f"*CONTACT PRINT, SLAVE={slave}, MASTER={master}, FREQUENCY={increments}", "CF"]
     lines.append("*END STEP")
     return {ENDING: "\n".join(lines) + "\n"}
 
@@ -108,7 +111,7 @@ def _material(i, material, count):
 
 
 def _obstacles(problem, rigid):
-    """The rigid surfaces of obstacles, the faces that they touch, and how."""
+    """The rigid surfaces of obstacles, and the faces that they touch."""
     lines, element = [], len(problem.mesh.cells)
     if rigid:
         lines += [f"*NSET, NSET={OWN}BODY, GENERATE", f"1, {len(problem.mesh.points)}, 1"]
@@ -122,7 +125,6 @@ def _obstacles(problem, rigid):
         element += len(cells)
         lines += [f"*SURFACE, NAME=RIGID{i}, TYPE=ELEMENT", *(f"{e}, S1" for e in ids)]
         lines += _surface(f"TOUCHES{i}", obstacle.faces, problem.mesh.cells)
-        lines += _touch(f"OBSTACLE{i}", obstacle, f"TOUCHES{i}", f"RIGID{i}")
         # All of its nodes are driven: any stiffness will do.
         lines += [f"*MATERIAL, NAME=RIGID{i}", "*ELASTIC", "1., 0.", "*DENSITY", "1."]
         lines.append(f"*SOLID SECTION, ELSET={OWN}OBSTACLE{i}, MATERIAL=RIGID{i}")
@@ -130,14 +132,18 @@ def _obstacles(problem, rigid):
 
 
 def _pairs(problem):
-    """The pairs of surfaces of the mesh, and how they touch."""
+    """The surfaces of pairs."""
     lines = []
     for i, pair in enumerate(problem.pairs, 1):
-        names = f"FIRST{i}", f"SECOND{i}"
-        for name, faces in zip(names, (pair.faces, pair.other_faces)):
-            lines += _surface(name, faces, problem.mesh.cells)
-        lines += _touch(f"PAIR{i}", pair, *names)
+        lines += _surface(f"FIRST{i}", pair.faces, problem.mesh.cells)
+        lines += _surface(f"SECOND{i}", pair.other_faces, problem.mesh.cells)
     return lines
+
+
+def _touching(problem):
+    """Each Obstacle and Pair, and the names of its two surfaces."""
+    found = [(one, (f"TOUCHES{i}", f"RIGID{i}")) for i, one in enumerate(problem.obstacles, 1)]
+    return found + [(one, (f"FIRST{i}", f"SECOND{i}")) for i, one in enumerate(problem.pairs, 1)]
 
 
 def _surface(name, faces, cells):
@@ -148,14 +154,14 @@ def _surface(name, faces, cells):
     return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{e + 1}, S{k + 1}" for e, k in found)]
 
 
-def _touch(name, contact, slave, master):
+def _touch(contact, slave, master):
     """An Obstacle or a Pair as two surfaces: pressure in proportion to the depth and, along them, a
     spring of the same stiffness until it slips."""
-    lines = [f"*SURFACE INTERACTION, NAME={name}"]
+    lines = [f"*SURFACE INTERACTION, NAME={slave}"]
     lines += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", number(contact.stiffness)]
     if contact.friction:
         lines += ["*FRICTION", f"{number(contact.friction)}, {number(contact.stiffness)}"]
-    lines.append(f"*CONTACT PAIR, INTERACTION={name}, TYPE=SURFACE TO SURFACE")
+    lines.append(f"*CONTACT PAIR, INTERACTION={slave}, TYPE=SURFACE TO SURFACE")
     return lines + [f"{slave}, {master}"]
 
 

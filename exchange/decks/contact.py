@@ -49,7 +49,7 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two surfaces of deformable bodies, or one that may touch itself, with the keys of [[contact]].
+    """Two surfaces of deformable bodies, or one that may touch itself, as [[contact]] gives them.
 
     faces, other_faces: (f, 4), nodes; other_faces is None if the surface touches itself. stiffness:
     pressure per depth of its penalty, Pa/m.
@@ -73,8 +73,8 @@ class Expressible:
     """What the deck of a program can hold of contact.
 
     shapes: of obstacles. inside: whether bodies may be inside of them. obstacles, pairs, itself: in
-    which of AT_REST, "kinematic" and "penalty", the methods of motions, obstacles, two surfaces, and
-    a surface that touches itself are known. how: what the deck makes of them, for README.md.
+    which of AT_REST, "kinematic" and "penalty" (methods of motions) it knows obstacles, two
+    surfaces, and a surface that touches itself. how: what the deck makes of them, for README.md.
     """
 
     shapes: tuple = ()
@@ -93,7 +93,9 @@ def check(problem, program):
         if value in allowed:
             return
         allowed = f"allowed: {', '.join(allowed)}" if allowed else otherwise
-        raise InputError(f"{one.words}: {key} = '{value}' is not known to {program.NAME}; {allowed}")
+        raise InputError(
+            f"{one.words}: {key} = '{value}' is not known to {program.NAME}; {allowed}"
+        )
 
     for one in problem.obstacles:
         require(one, "shape", one.shape, known.shapes, "its decks hold no obstacles")
@@ -106,5 +108,9 @@ def check(problem, program):
             methods, what = known.itself, "surfaces that touch themselves"
         else:
             methods, what = known.pairs, "[[contact]]"
-        key, value = ("method", one.method) if problem.motion else ("answer", AT_REST)
-        require(one, key, value, methods, f"its decks hold no {what}")
+        if not problem.motion:
+            require(one, "answer", AT_REST, methods, f"its decks hold no {what}")
+            continue
+        moving = [method for method in methods if method != AT_REST]
+        where = f"{what} in {AT_REST} only" if methods else f"no {what}"
+        require(one, "method", one.method, moving, f"its decks hold {where}")

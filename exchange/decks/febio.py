@@ -182,7 +182,9 @@ def _driven(obstacles):
     lines = []
     for i, obstacle in enumerate(obstacles, 1):
         held = "".join(f"<{dof}_dof>1</{dof}_dof>" for dof in ("Ru", "Rv", "Rw"))
-        lines.append(f'<rigid_bc name="turn{i}" type="rigid_fixed"><rb>rigid{i}</rb>{held}</rigid_bc>')
+        lines.append(
+            f'<rigid_bc name="turn{i}" type="rigid_fixed"><rb>rigid{i}</rb>{held}</rigid_bc>'
+        )
         for dof, value in zip(DOFS, obstacle.displacement):
             lines.append(
                 f'<rigid_bc name="move{i}{dof}" type="rigid_displacement"><rb>rigid{i}</rb>'

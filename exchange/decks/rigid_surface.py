@@ -4,6 +4,8 @@ A curved shape is a polyhedron with its corners on the shape. Where the body is 
 chords err by at most CHORD of the depth; farther away, by as much of the distance from the body.
 """
 
+import math
+
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -13,6 +15,8 @@ from common.hexahedron import CORNERS, FACES
 CHORD = 0.01
 ROUNDING = 1e-6  # of coordinates in files, over an edge
 MOST_TRIANGLES = 200_000
+LATTICE = 8  # points on each edge of a face, less one, to which distances are measured
+NEWTON = 30  # steps
 HEIGHT = 0.1  # of the elements behind the surface, over an edge; they do not deform
 # Two triangles of each face of a cube, outward.
 _CUBE = np.vstack([FACES[:, [0, 1, 2]], FACES[:, [0, 2, 3]]])
@@ -45,12 +49,14 @@ def tetrahedra(obstacle, points, depth):
     edges = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2)
     behind = p.mean(axis=1) + HEIGHT * edges.min(axis=1)[:, None] * normals
     own = len(corners) + np.arange(len(triangles))
-    return np.vstack([corners, behind]), np.column_stack([triangles, own])
+    nodes = np.vstack([corners, behind])
+    digits = 12 - math.ceil(math.log10(np.abs(nodes).max()))  # so that all processors agree
+    return nodes.round(digits), np.column_stack([triangles, own])
 
 
 def depth_of(obstacle, problem):
-    """How deep an Obstacle is pressed in (m): how far it overlaps the undeformed body at its end or,
-    if it does not, the largest imposed displacement or, without one, the shortest edge it touches.
+    """How deep an Obstacle is pressed in (m): how far it overlaps the undeformed body at its end;
+    if it does not, the largest imposed displacement; without one, the shortest edge it touches.
     """
     edge = shortest_edge(obstacle.faces, problem.mesh.points)
     imposed = np.abs(problem.values[problem.prescribed]).max(initial=0.0)
@@ -71,8 +77,8 @@ def triangulated(obstacle, points, depth):
     """
     corners, triangles, onto = _start(obstacle, points)
     corners = onto(corners)
-    touching = points[np.unique(obstacle.faces)]
-    tree, reach = cKDTree(touching), _longest_diagonals(obstacle.faces, points)
+    samples, reach = _samples(obstacle.faces, points)
+    tree = cKDTree(samples)
     while True:
         edges = np.sort(np.vstack([triangles[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
         edges, number = np.unique(edges, axis=0, return_inverse=True)
@@ -84,27 +90,31 @@ def triangulated(obstacle, points, depth):
         split = np.linalg.norm(placed - middle, axis=1) > allowed
         if not split.any():
             return corners, triangles
-        triangles = _split(triangles, np.where(split, len(corners) + split.cumsum() - 1, -1)[number])
+        triangles = _split(
+            triangles, np.where(split, len(corners) + split.cumsum() - 1, -1)[number]
+        )
         corners = np.vstack([corners, placed[split]])
         if len(triangles) > MOST_TRIANGLES:
             raise InputError(
-                f"{obstacle.words}: as a surface of triangles with chords of {CHORD * depth:.3g} m, "
-                f"a hundredth of its depth, it needs more than {MOST_TRIANGLES}"
+                f"{obstacle.words}: as a surface of triangles it needs over {MOST_TRIANGLES}: "
+                f"its chords are {CHORD * depth:.3g} m, a hundredth of its depth; allowed: a "
+                "deeper or a smaller one, or a set of the body near it"
             )
 
 
-def _longest_diagonals(faces, points):
-    """The longest diagonal of the faces (f, 4) around each of their nodes (sorted), m."""
-    nodes, place = np.unique(faces, return_inverse=True)
+def _samples(faces, points):
+    """(points, half their distance) of a lattice on each face (f, 4), m."""
+    t = np.linspace(0.0, 1.0, LATTICE + 1)
+    x, y = (one.ravel() for one in np.meshgrid(t, t))
+    shapes = np.stack([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y])
     p = points[faces]
     diagonal = np.linalg.norm(p[:, :2] - p[:, 2:], axis=2).max(axis=1)
-    longest = np.zeros(len(nodes))
-    np.maximum.at(longest, place.reshape(faces.shape), diagonal[:, None])
-    return longest
+    samples = np.einsum("ks,fki->fsi", shapes, p)
+    return samples.reshape(-1, 3), np.repeat(diagonal / LATTICE / 2, len(x))
 
 
 def _split(triangles, middles):
-    """Triangles (k, 3) with the nodes in the middles (k, 3) of their edges, -1 where there is none."""
+    """Triangles (k, 3) with the nodes in the middles (k, 3) of their edges, -1 for none."""
     parts = []
     for corner, middle in zip(triangles.tolist(), middles.tolist()):
         given = [k for k in range(3) if middle[k] >= 0]
@@ -128,10 +138,11 @@ def _start(obstacle, points):
     """(corners, triangles, onto) of a coarse surface; onto maps points onto the shape."""
     if obstacle.shape == "surface":
         return obstacle.point + obstacle.points, obstacle.triangles, lambda x: x
-    if obstacle.shape in ("box", "ellipsoid"):
-        corners = obstacle.point + CORNERS * obstacle.half_sizes
-        is_box = obstacle.shape == "box"
-        return corners, _CUBE, (lambda x: x) if is_box else lambda x: _onto_ellipsoid(obstacle, x)
+    if obstacle.shape == "box":
+        return obstacle.point + CORNERS * obstacle.half_sizes, _CUBE, lambda x: x
+    if obstacle.shape == "ellipsoid":
+        corners = obstacle.point + CORNERS * obstacle.half_sizes / math.sqrt(3.0)
+        return corners, _CUBE, lambda x: _onto_ellipsoid(obstacle, x)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     far = np.linalg.norm(np.ptp(points, axis=0)) + np.linalg.norm(obstacle.displacement)
     if obstacle.shape == "plane":
@@ -179,5 +190,14 @@ def _onto_round(obstacle, x):
 
 
 def _onto_ellipsoid(obstacle, x):
-    arm = x - obstacle.point
-    return obstacle.point + arm / np.linalg.norm(arm / obstacle.half_sizes, axis=1)[:, None]
+    """The closest points (n, 3), a^2 x / (a^2 + t): Newton's method ascends to t from a lower bound.
+    Points in a plane of symmetry get points in it."""
+    a, arm = obstacle.half_sizes, x - obstacle.point
+    t = (a * (np.abs(arm) - a)).max(axis=1)
+    for _ in range(NEWTON):
+        below = np.maximum(a**2 + t[:, None], ROUNDING**2 * a**2)
+        squares = (a * arm / below) ** 2
+        step = (squares.sum(axis=1) - 1) / (2 * squares / below).sum(axis=1)
+        t += np.maximum(step, 0.0)
+    near = arm / below
+    return obstacle.point + a * (a * near / np.linalg.norm(a * near, axis=1)[:, None])
