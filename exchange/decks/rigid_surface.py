@@ -190,8 +190,8 @@ def _onto_round(obstacle, x):
 
 
 def _onto_ellipsoid(obstacle, x):
-    """The closest points (n, 3), a^2 x / (a^2 + t): Newton's method ascends to t from a lower bound.
-    Points in a plane of symmetry get points in it."""
+    """The closest points (n, 3), a^2 x / (a^2 + t): Newton's method ascends to t from below. Points
+    in a plane of symmetry get points in it."""
     a, arm = obstacle.half_sizes, x - obstacle.point
     t = (a * (np.abs(arm) - a)).max(axis=1)
     for _ in range(NEWTON):
