@@ -90,16 +90,14 @@ def triangulated(obstacle, points, depth):
         split = np.linalg.norm(placed - middle, axis=1) > allowed
         if not split.any():
             return corners, triangles
-        triangles = _split(
-            triangles, np.where(split, len(corners) + split.cumsum() - 1, -1)[number]
-        )
-        corners = np.vstack([corners, placed[split]])
-        if len(triangles) > MOST_TRIANGLES:
+        if len(triangles) + split[number].sum() > MOST_TRIANGLES:
             raise InputError(
                 f"{obstacle.words}: as a surface of triangles it needs over {MOST_TRIANGLES}: "
                 f"its chords are {CHORD * depth:.3g} m, a hundredth of its depth; allowed: a "
                 "deeper or a smaller one, or a set of the body near it"
             )
+        middles = np.where(split, len(corners) + split.cumsum() - 1, -1)
+        triangles, corners = _split(triangles, middles[number]), np.vstack([corners, placed[split]])
 
 
 def _samples(faces, points):
