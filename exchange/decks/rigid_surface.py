@@ -7,7 +7,6 @@ chords err by at most CHORD of the depth; farther away, by as much of the distan
 import math
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from common.errors import InputError
 from common.hexahedron import CORNERS, FACES
@@ -75,6 +74,8 @@ def triangulated(obstacle, points, depth):
 
     Raises InputError if it takes more than MOST_TRIANGLES.
     """
+    from scipy.spatial import cKDTree  # takes long to load
+
     corners, triangles, onto = _start(obstacle, points)
     corners = onto(corners)
     samples, reach = _samples(obstacle.faces, points)
