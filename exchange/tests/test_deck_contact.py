@@ -250,9 +250,3 @@ def test_contact_that_no_deck_can_hold(block, keys, message):
     words = "--deck", "calculix", "-o", block.parent / "deck.inp"
     sandglass("mesh", with_tip(block, **keys), *words, code=2, message=message)
     assert not (block.parent / "deck.inp").exists()
-
-
-def test_a_deck_in_a_folder_that_is_missing(block):
-    words = "--deck", "calculix", "-o", "none/deck.inp"
-    message = "none/deck.inp: cannot be written"
-    sandglass("mesh", with_tip(block), *words, code=2, message=message, cwd=block.parent)
