@@ -1,13 +1,15 @@
 """Sandglass's own HDF5 files: mesh, displacement, and the data of a deck."""
 
 import math
+from dataclasses import fields
 
 import h5py
 import numpy as np
 
 from common.errors import InputError
 from common.result_file import text_of
-from exchange.decks.problem import Material, Motion, Problem
+from exchange.decks.contact import Obstacle, Pair
+from exchange.decks.problem import Material, Motion, Problem, agreed
 from exchange.foreign_mesh import HexMesh
 
 
@@ -39,11 +41,22 @@ def read_problem(path):
         imposed = file["problem/imposed"][...] if "problem/imposed" in file else np.empty((0, 3))
         loads = file["problem/forces"][...] if "problem/forces" in file else np.empty((0, 4))
         made_of = file["mesh/materials"][...] if "mesh/materials" in file else None
+        ties = file["problem/ties"][...] if "problem/ties" in file else np.empty((0, 3))
+        obstacles, pairs = (
+            [kind(**_keys(kind, group[i])) for i in sorted(group, key=int)]
+            for kind, group in (
+                (Obstacle, file.get("problem/obstacles", {})),
+                (Pair, file.get("problem/contacts", {})),
+            )
+        )
     shape = mesh.points.shape
     prescribed, values, forces = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
     at = imposed[:, 0].astype(int), imposed[:, 1].astype(int)
     prescribed[at], values[at] = True, imposed[:, 2]
     np.add.at(forces, loads[:, 0].astype(int), loads[:, 1:])
+    followed = {}
+    for node, other, weight in ties.tolist():
+        followed.setdefault(int(node), []).append((int(other), weight))
     if made_of is None:
         made_of = np.zeros(len(mesh.cells), dtype=int)
     materials = [
@@ -59,7 +72,18 @@ def read_problem(path):
         forces=forces,
         motion=_motion(attributes) if "duration" in attributes else None,
         stable_step=float(attributes["stable_step"]),
+        obstacles=obstacles,
+        pairs=pairs,
+        ties=followed,
     )
+
+
+def _keys(kind, group):
+    """The fields of an Obstacle or a Pair that a group has, as attributes or datasets."""
+    found = {key: text_of(value) for key, value in group.attrs.items()}
+    found = {key: v if isinstance(v, str) else agreed(v) for key, v in found.items()}
+    found |= {key: data[...] for key, data in group.items()}
+    return {one.name: found[one.name] for one in fields(kind) if one.name in found}
 
 
 def _material(attributes, prefix, elements):

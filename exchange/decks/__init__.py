@@ -1,14 +1,16 @@
 """The programs for which decks are written; a new one is a module here and an entry in PROGRAMS.
 
 A module has NAME, ENDING (of its main file), ELEMENTS (the default first), LAWS and VOLUMES (the
-project's names of what it knows), TAKES_HOURGLASS, and deck(problem, element, hourglass), which
-returns the text of each file by its ending.
+project's names of what it knows), TAKES_HOURGLASS, TAKES_HANGING_NODES, CONTACT (an Expressible),
+and deck(problem, element, hourglass), which returns the text of each file by its ending.
 """
 
 from dataclasses import replace
 
 from common.errors import InputError, suggestion
 from exchange.decks import calculix, febio, niftysim, openradioss
+from exchange.decks.contact import check
+from exchange.decks.problem import refuse
 
 PROGRAMS = {
     "calculix": calculix,
@@ -45,6 +47,9 @@ def files(name, problem, output, element="", hourglass=None):
                     f"material.{key} = {value!r} is not known to {program.NAME}; "
                     f"{suggestion(value, sorted(known))}"
                 )
+    if problem.ties and not program.TAKES_HANGING_NODES:
+        refuse(problem, program.NAME, "hanging nodes, which refinement and ties make")
+    check(problem, program)
     stem = output.name.removesuffix(program.ENDING)
     title = " ".join(problem.title.split()).replace("--", "- -")  # XML comments have no "--"
     texts = program.deck(replace(problem, name=stem, title=title), element, hourglass)

@@ -9,6 +9,8 @@ import math
 import numpy as np
 
 from common.errors import InputError
+from exchange.decks import rigid_surface
+from exchange.decks.contact import AT_REST, SHAPES, Expressible
 from exchange.decks.problem import refuse, agreed
 
 NAME, ENDING = "FEBio", ".feb"
@@ -17,6 +19,14 @@ NAME, ENDING = "FEBio", ".feb"
 ELEMENTS = ("three-field-solid", "udg-hex", "elastic-solid")
 VOLUMES = {"logarithmic": "default", "quadratic-logarithmic": "NIKE3D", "quadratic": "Abaqus"}
 TAKES_HOURGLASS = True  # hg of udg-hex
+TAKES_HANGING_NODES = False
+CONTACT = Expressible(
+    shapes=SHAPES,
+    inside=True,
+    obstacles=(AT_REST, "penalty"),
+    pairs=(AT_REST, "penalty"),
+    how="sliding-elastic; obstacles as rigid bodies of triangles",
+)
 DOFS = "xyz"
 LOAD_STEPS = 10
 # Norms of displacement, residual and energy at which Newton's method stops.
@@ -55,35 +65,63 @@ def deck(problem, element, hourglass):
     mesh, motion = problem.mesh, problem.motion
     lines = ["<?xml version='1.0' encoding='UTF-8'?>", f"<!-- {problem.title} -->"]
     lines += ['<febio_spec version="4.0">', '<Module type="solid"/>']
-    lines += _explicit(motion) if motion else _newton()
+    touching = [*problem.obstacles, *problem.pairs]
+    rubs = any(one.friction for one in touching)
+    lines += _explicit(motion) if motion else _newton(rubs)
+    rigid = rigid_surface.parts(problem)
     lines += ["<Material>", *_materials(problem), "</Material>", "<Mesh>", '<Nodes name="nodes">']
-    lines += [f'<node id="{n}">{_row(point)}</node>' for n, point in enumerate(mesh.points, 1)]
+    points = np.vstack([mesh.points, *(nodes for nodes, _ in rigid)])
+    lines += [f'<node id="{n}">{_row(point)}</node>' for n, point in enumerate(points, 1)]
     lines.append("</Nodes>")
     for i, material in enumerate(problem.materials, 1):
         lines.append(f'<Elements type="hex8" name="part{i}">')
         cells = zip(material.elements + 1, mesh.cells[material.elements] + 1)
         lines += [f'<elem id="{e}">{_row(cell)}</elem>' for e, cell in cells]
         lines.append("</Elements>")
+    first = len(mesh.cells) + 1
+    for i, (_, cells) in enumerate(rigid, 1):
+        lines.append(f'<Elements type="tet4" name="rigid{i}">')
+        lines += [f'<elem id="{e}">{_row(cell)}</elem>' for e, cell in enumerate(cells + 1, first)]
+        lines.append("</Elements>")
+        first += len(cells)
     imposed, applied = problem.imposed(), problem.applied()
     for i, (_, _, nodes) in enumerate([*imposed, *applied], 1):
         lines.append(f'<NodeSet name="set{i}">{_row(nodes + 1)}</NodeSet>')
+    if rigid:
+        lines.append(f'<NodeSet name="body">{_row(np.arange(1, len(mesh.points) + 1))}</NodeSet>')
+    others = [cells[:, 2::-1] for _, cells in rigid] + [pair.other_faces for pair in problem.pairs]
+    for i, (one, faces) in enumerate(zip(touching, others), 1):
+        lines += _surface(f"first{i}", one.faces) + _surface(f"second{i}", faces)
+        lines.append(f'<SurfacePair name="pair{i}">')
+        lines.append(f"<primary>first{i}</primary><secondary>second{i}</secondary></SurfacePair>")
     lines += ["</Mesh>", "<MeshDomains>"]
     stiffness = "" if hourglass is None else f"<hg>{float(hourglass)!r}</hg>"
     for i in range(1, len(problem.materials) + 1):
         words = f'name="part{i}" mat="material{i}" type="{element}"'
         lines.append(f"<SolidDomain {words}>{stiffness}</SolidDomain>")
+    for i, _ in enumerate(rigid, 1):
+        lines.append(f'<SolidDomain name="rigid{i}" mat="rigid{i}" type="rigid-solid"/>')
     lines += ["</MeshDomains>", "<Boundary>"]
     lines += [_imposed(i, *one) for i, one in enumerate(imposed, 1)]
-    lines += ["</Boundary>", "<Loads>"]
+    lines.append("</Boundary>")
+    if rigid:
+        lines += ["<Rigid>", *_driven(problem.obstacles), "</Rigid>"]
+    lines.append("<Loads>")
     lines += [_applied(i, *one) for i, one in enumerate(applied, len(imposed) + 1)]
-    lines += ["</Loads>", "<LoadData>", *_curve(motion), "</LoadData>", "<Output><logfile>"]
+    lines.append("</Loads>")
+    if touching:
+        touches = (_touch(i, one, mesh.points) for i, one in enumerate(touching, 1))
+        lines += ["<Contact>", *touches, "</Contact>"]
+    lines += ["<LoadData>", *_curve(motion), "</LoadData>", "<Output><logfile>"]
     # With all digits, only after the last step.
-    lines.append('<node_data data="ux;uy;uz" delim=" " file="displacement.log"/>')
+    body = ' node_set="body"' if rigid else ""
+    lines.append(f'<node_data data="ux;uy;uz" delim=" " file="displacement.log"{body}/>')
     return {ENDING: "\n".join([*lines, "</logfile></Output>", "</febio_spec>"]) + "\n"}
 
 
-def _newton():
-    """The control of a quasi-static analysis."""
+def _newton(rubs):
+    """The control of a quasi-static analysis. Friction makes its stiffness non-symmetric."""
+    kind = "non-symmetric" if rubs else "symmetric"
     return [
         "<Control>",
         "<analysis>STATIC</analysis>",
@@ -91,7 +129,7 @@ def _newton():
         "<plot_level>PLOT_NEVER</plot_level><output_level>OUTPUT_FINAL</output_level>",
         '<time_stepper type="default"><max_retries>20</max_retries><opt_iter>20</opt_iter>',
         f"<dtmin>1e-6</dtmin><dtmax>{1 / LOAD_STEPS!r}</dtmax></time_stepper>",
-        '<solver type="solid"><symmetric_stiffness>symmetric</symmetric_stiffness>',
+        f'<solver type="solid"><symmetric_stiffness>{kind}</symmetric_stiffness>',
         f"<dtol>{TOLERANCE}</dtol><etol>{TOLERANCE}</etol><rtol>{TOLERANCE}</rtol>",
         "<max_refs>50</max_refs><qn_method type='BFGS'><max_ups>0</max_ups></qn_method>",
         "</solver>",
@@ -123,7 +161,49 @@ def _materials(problem):
         lines.append(
             f'<material id="{i}" name="material{i}" type="{kind}">{words}{volume}</material>'
         )
+    first = len(problem.materials) + 1
+    for i, _ in enumerate(problem.obstacles):
+        lines.append(
+            f'<material id="{first + i}" name="rigid{i + 1}" type="rigid body">'
+            "<density>1.0</density><center_of_mass>0,0,0</center_of_mass></material>"
+        )
     return lines
+
+
+def _surface(name, faces):
+    """The lines of a surface of triangles (f, 3) or quadrilaterals (f, 4)."""
+    kind = {3: "tri3", 4: "quad4"}[faces.shape[1]]
+    rows = (f'<{kind} id="{f}">{_row(face)}</{kind}>' for f, face in enumerate(faces + 1, 1))
+    return [f'<Surface name="{name}">', *rows, "</Surface>"]
+
+
+def _driven(obstacles):
+    """The lines that move rigid bodies as obstacles, without turning."""
+    lines = []
+    for i, obstacle in enumerate(obstacles, 1):
+        held = "".join(f"<{dof}_dof>1</{dof}_dof>" for dof in ("Ru", "Rv", "Rw"))
+        lines.append(
+            f'<rigid_bc name="turn{i}" type="rigid_fixed"><rb>rigid{i}</rb>{held}</rigid_bc>'
+        )
+        for dof, value in zip(DOFS, obstacle.displacement):
+            lines.append(
+                f'<rigid_bc name="move{i}{dof}" type="rigid_displacement"><rb>rigid{i}</rb>'
+                f'<dof>{dof}</dof><value lc="1">{float(value)!r}</value>'
+                "<relative>0</relative></rigid_bc>"
+            )
+    return lines
+
+
+def _touch(i, contact, points):
+    """An Obstacle or a Pair: a penalty, followed to the depth of the shortest edge."""
+    symmetric = 0 if contact.friction else 1
+    return (
+        f'<contact name="touch{i}" surface_pair="pair{i}" type="sliding-elastic">'
+        f"<laugon>PENALTY</laugon><penalty>{float(contact.stiffness)!r}</penalty>"
+        f"<search_radius>{rigid_surface.shortest_edge(contact.faces, points)!r}</search_radius>"
+        f"<symmetric_stiffness>{symmetric}</symmetric_stiffness>"
+        f"<fric_coeff>{float(contact.friction)!r}</fric_coeff></contact>"
+    )
 
 
 def _imposed(i, component, value, _):

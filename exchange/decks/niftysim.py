@@ -4,6 +4,7 @@ Its neo-Hookean energy mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2 is the project's, 
 POLY345 the paper's. It has no smooth curve that is then held.
 """
 
+from exchange.decks.contact import Expressible
 from exchange.decks.problem import refuse
 
 NAME, ENDING = "NiftySim", ".xml"
@@ -12,6 +13,8 @@ LAWS = ("neo-hookean",)
 VOLUMES = ("quadratic",)
 USUAL_HOURGLASS = 0.075  # HGKappa in its own example models
 TAKES_HOURGLASS = True
+TAKES_HANGING_NODES = False
+CONTACT = Expressible()
 
 
 def deck(problem, element, hourglass):

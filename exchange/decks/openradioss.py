@@ -4,7 +4,10 @@ Law 42, sum mu_p / alpha_p (lbar_1^alpha_p + ... - 3) + K/2 (J - 1)^2, covers th
 laws. It integrates in time: a quasi-static case becomes a damped motion.
 """
 
+import numpy as np
+
 from exchange.abaqus_writer import number
+from exchange.decks.contact import AT_REST, Expressible
 
 NAME, ENDING = "OpenRadioss", "_0000.rad"
 # Isolid, Icpre: physical stabilisation, viscous hourglass control, and eight points with a constant
@@ -12,6 +15,16 @@ NAME, ENDING = "OpenRadioss", "_0000.rad"
 ELEMENTS = {"HEPH": (24, 0), "viscous": (1, 0), "H8C": (17, 1)}
 VOLUMES = ("quadratic",)
 TAKES_HOURGLASS = True  # h of the viscous control
+TAKES_HANGING_NODES = False
+WALLS = {"plane": "PLANE", "sphere": "SPHER", "cylinder": "CYL"}
+CONTACT = Expressible(
+    shapes=tuple(WALLS),
+    obstacles=(AT_REST, "kinematic"),
+    pairs=(AT_REST, "penalty"),
+    itself=(AT_REST, "penalty"),
+    how="/RWALL; /INTER/TYPE24 with its own stiffness",
+)
+WALL_MASS = 1.0  # kg; walls are driven, so that any will do
 USUAL_HOURGLASS = 0.1
 NO_VISCOSITY = 1e-20  # zero would mean the default
 # The engine takes the smaller of its own step, times this, and the largest step of /DTIX.
@@ -41,14 +54,23 @@ def deck(problem, element, hourglass):
         lines += _material(i, material) + _property(i, element, hourglass)
         lines += [f"/PART/{i}", f"part {i}", f"{i:10d}{i:10d}"]
     lines.append("/NODE")
-    lines += [f"{n:10d}{_reals(point)}" for n, point in enumerate(problem.mesh.points, 1)]
+    # The last nodes carry walls.
+    points = np.vstack([problem.mesh.points, *(wall.point for wall in problem.obstacles)])
+    lines += [f"{n:10d}{_reals(point)}" for n, point in enumerate(points, 1)]
     for i, material in enumerate(problem.materials, 1):
         lines.append(f"/BRICK/{i}")
         for e in material.elements:
             lines.append(f"{e + 1:10d}" + _integers(problem.mesh.cells[e] + 1))
     lines += ["/FUNCT/1", "loading curve"]
     lines += [_reals(point) for point in zip(*motion.curve())]
-    lines += _conditions(problem)
+    imposed = problem.imposed() + [
+        (axis, value, np.array([node]))
+        for node, wall in enumerate(problem.obstacles, len(problem.mesh.points))
+        for axis, value in enumerate(wall.displacement)
+    ]
+    applied = problem.applied()
+    lines += _conditions(imposed, applied) + _walls(problem, 2 + len(imposed) + len(applied))
+    lines += _interfaces(problem.pairs)
     if motion.damping:
         lines += ["/GRNOD/PART/1", "all", _integers(range(1, len(problem.materials) + 1))]
         lines += ["/DAMP/1", "mass-proportional", _reals([motion.damping, 0.0]) + f"{1:10d}"]
@@ -89,12 +111,58 @@ def _property(i, element, hourglass):
     ]
 
 
-def _conditions(problem):
+def _group(i, nodes):
+    """The lines of node group i."""
+    rows = (_integers(nodes[k : k + PER_LINE] + 1) for k in range(0, len(nodes), PER_LINE))
+    return [f"/GRNOD/NODE/{i}", f"nodes {i}", *rows]
+
+
+def _walls(problem, group):
+    """The lines of obstacles as rigid walls that a node carries, each with its node group, from
+    number `group` on. Nodes that are wholly imposed are left out: they feel no obstacle."""
+    lines, free = [], ~problem.prescribed.all(axis=1)
+    for i, wall in enumerate(problem.obstacles, 1):
+        nodes = np.unique(wall.faces)
+        lines += _group(group, nodes[free[nodes]])
+        node, slide = len(problem.mesh.points) + i, 2 if wall.friction else 0
+        lines += [f"/RWALL/{WALLS[wall.shape]}/{i}", wall.words[:100]]
+        lines.append(_integers([node, slide, group, 0]))
+        lines.append(_reals([0.0, wall.friction, 2 * wall.radius]))
+        lines.append(_reals([WALL_MASS, 0.0, 0.0, 0.0]))
+        if wall.shape == "plane":
+            lines.append(_reals(wall.point + wall.normal / np.linalg.norm(wall.normal)))
+        elif wall.shape == "cylinder":
+            lines.append(_reals(wall.end))
+        group += 1
+    return lines
+
+
+def _interfaces(pairs):
+    """The lines of pairs of surfaces, or of one with itself."""
+    lines, surface = [], 0
+    for i, pair in enumerate(pairs, 1):
+        numbers = []
+        for faces in (pair.faces, pair.other_faces):
+            if faces is None:
+                numbers.append(0)
+                continue
+            surface += 1
+            numbers.append(surface)
+            lines += [f"/SURF/SEG/{surface}", f"surface {surface}"]
+            lines += [_integers([k, *face]) for k, face in enumerate(faces + 1, 1)]
+        lines += [f"/INTER/TYPE24/{i}", pair.words[:100]]
+        lines.append(_integers(numbers))
+        lines += ["", ""]  # gaps, stiffness and penetrations: its own
+        lines.append(_reals([0.0, pair.friction]))
+        lines += ["", ""]  # no damping of its own, Coulomb's law
+    return lines
+
+
+def _conditions(imposed, applied):
     """The lines of all supports, imposed displacements and forces, each with its node group."""
-    lines, imposed, applied = [], problem.imposed(), problem.applied()
+    lines = []
     for i, (component, value, nodes) in enumerate([*imposed, *applied], 2):
-        lines += [f"/GRNOD/NODE/{i}", f"nodes {i}"]
-        lines += [_integers(nodes[k : k + PER_LINE] + 1) for k in range(0, len(nodes), PER_LINE)]
+        lines += _group(i, nodes)
         direction = f"{DOFS[component]:>10}"
         if i - 2 >= len(imposed):
             lines += [f"/CLOAD/{i}", f"force {i}"]

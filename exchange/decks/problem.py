@@ -1,7 +1,7 @@
 """The problem of a deck: mesh, materials, supports, loads, and the motion if there is one."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -70,6 +70,8 @@ class Problem:
     title: one line. mesh: HexMesh. materials: list of Material. prescribed: (n, 3) bool, which
     displacements are imposed. values: (n, 3), m. forces: (n, 3), N. motion: a Motion, or None for a
     quasi-static case. stable_step: of Sandglass, s. name: of the deck's files, without ending.
+    obstacles, pairs: lists of Obstacle and Pair. ties: {node: [(other, weight)]} of hanging nodes,
+    which are where the weighted mean of others is.
     """
 
     title: str
@@ -81,6 +83,9 @@ class Problem:
     motion: Motion | None
     stable_step: float
     name: str = ""
+    obstacles: tuple = ()
+    pairs: tuple = ()
+    ties: dict = field(default_factory=dict)
 
     def relaxation(self):
         """A damped motion that ends at the quasi-static answer."""

@@ -6,6 +6,9 @@ import pytest
 from generated import mutilated
 from meshes import CELLS, POINTS, Refused, run, write
 
+from common.errors import InputError
+from exchange import matching
+
 RANDOM = np.random.default_rng(7)
 U = RANDOM.normal(size=POINTS.shape)  # the answer, node by node
 ORDER = RANDOM.permutation(len(POINTS))  # in which other programs have the nodes
@@ -247,6 +250,13 @@ def test_missing_and_ambiguous_data_are_refused(tmp_path, capsys, make, message)
     with pytest.raises(Refused, match=message):
         matched(capsys, make(tmp_path))
     assert not (tmp_path / "out.h5").exists()
+
+
+def test_only_the_order_of_the_case_distinguishes_nodes_at_one_place():
+    """Those of bodies that touch: in another order nothing says which is which."""
+    assert (matching.by_coordinates(TWICE, TWICE, 1e-5, "a") == np.arange(len(TWICE))).all()
+    with pytest.raises(InputError, match="must occur exactly once"):
+        matching.by_coordinates(TWICE, TWICE[::-1], 1e-5, "a")
 
 
 @pytest.mark.parametrize("text", ["nan", "inf", "x", ""])

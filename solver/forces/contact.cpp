@@ -43,7 +43,7 @@ void Contact::resolve(ForceResolver& resolver) const {
                 "method = 'penalty', or sets without such nodes");
     }
   }
-  const ContactScale scale(resolver, all);
+  const ContactScale scale(resolver.points, resolver.cells, resolver.young_moduli, all);
   const bool is_constant = curve == LoadCurve{};
   const std::size_t of_friction =
       resolver.number_of(is_constant ? LoadCurve{.times = {0.0}, .factors = {1.0}} : curve);

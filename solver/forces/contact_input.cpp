@@ -12,15 +12,16 @@
 
 namespace sandglass {
 
-ContactScale::ContactScale(const ForceResolver& resolver, const std::vector<Quadrilateral>& faces) {
-  std::vector<bool> touches(resolver.points.size(), false);
+ContactScale::ContactScale(const NodalField& points, std::span<const Hexahedron> cells,
+                           const std::vector<double>& young_moduli, const std::vector<Quadrilateral>& faces) {
+  std::vector<bool> touches(points.size(), false);
   for (const int node : nodes_of(faces)) touches[at(node)] = true;
-  for (std::size_t e = 0; e < resolver.cells.size(); ++e) {
-    const Hexahedron& cell = resolver.cells[e];
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    const Hexahedron& cell = cells[e];
     if (std::ranges::count_if(cell, [&](int node) { return touches[at(node)]; }) < 4) continue;
-    modulus = std::min(modulus, resolver.young_moduli[e]);
+    modulus = std::min(modulus, young_moduli[e]);
     for (const auto& [a, b] : hexahedron_edges)
-      edge = std::min(edge, distance(resolver.points[at(cell[a])], resolver.points[at(cell[b])]));
+      edge = std::min(edge, distance(points[at(cell[a])], points[at(cell[b])]));
   }
 }
 

@@ -11,7 +11,8 @@ struct ContactScale {
   double modulus = INFINITY;  ///< Pa
   double edge = INFINITY;     ///< m
 
-  ContactScale(const ForceResolver& resolver, const std::vector<Quadrilateral>& faces);
+  ContactScale(const NodalField& points, std::span<const Hexahedron> cells,
+               const std::vector<double>& young_moduli, const std::vector<Quadrilateral>& faces);
 
   /// The stiffness per area, Pa/m, of a penalty.
   double stiffness(double penalty) const { return penalty * modulus / edge; }

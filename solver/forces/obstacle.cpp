@@ -70,7 +70,7 @@ std::optional<BrokenRule> Obstacle::broken_rule() const {
 void Obstacle::resolve(ForceResolver& resolver) const {
   require_own_name(resolver, name, label);
   const auto faces = resolver.faces(name, set);
-  const ContactScale scale(resolver, faces);
+  const ContactScale scale(resolver.points, resolver.cells, resolver.young_moduli, faces);
   std::map<int, double> areas;
   for (const Quadrilateral& face : faces) {
     for (const FacePoint& gauss : gauss_points_of(corners_of(resolver.points, face))) {

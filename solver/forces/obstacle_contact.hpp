@@ -33,9 +33,14 @@ class ObstacleContact : public ContactForce {
         rounding_(1e-6 * extent_of(nodes_)) {}
 
   const std::vector<TouchingNode>& touching() const { return nodes_; }
+  const Obstacle& given() const { return obstacle_; }
+  const ObstacleShape& shape() const { return shape_; }
 
-  /// Of a node inside the obstacle, m; negative outside.
-  double depth_at_start(const TouchingNode& one) const { return -gap_at(difference(one.X, start_)).distance; }
+  /// Of an undeformed node inside the obstacle displaced by `moved` (m), m; negative outside.
+  double depth(const TouchingNode& one, const Vector& moved) const {
+    return -gap_at(difference(one.X, moved)).distance;
+  }
+  double depth_at_start(const TouchingNode& one) const { return depth(one, start_); }
 
   /// A point of the obstacle at the start, m; none of shapes without end, which reach out of any body.
   std::optional<Vector> point_of_shape() const {

@@ -9,9 +9,6 @@ namespace {
 /// the contact is augmented, each chooses the nearest triangle once again.
 constexpr double overhang = 0.1;
 
-/// At rest no step is limited by the stiffness.
-constexpr double stiffer_at_rest = 30.0;
-
 /// Points that just fit are linearized as touching, up to this share of the shortest edge.
 constexpr double just_fits = 1e-6;
 

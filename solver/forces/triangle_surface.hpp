@@ -23,6 +23,9 @@ class TriangleSurface {
   /// Half the shortest edge of the box around it, m.
   double half_thickness() const;
 
+  const NodalField& points() const { return points_; }  ///< m
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+
   /// A point of the surface, m.
   const Vector& first_point() const { return points_.front(); }
 

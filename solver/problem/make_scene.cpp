@@ -135,17 +135,6 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
   }
 }
 
-/// Young's modulus of each element's undeformed material, Pa.
-std::vector<double> young_moduli(const Mesh& mesh, const Materials& materials) {
-  const std::vector<double> lambdas = lame_lambdas(materials), moduli = shear_moduli(materials);
-  std::vector<double> of_elements(mesh.cells.size());
-  for (std::size_t e = 0; e < of_elements.size(); ++e) {
-    const double lambda = lambdas[materials.of(e)], mu = moduli[materials.of(e)];
-    of_elements[e] = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
-  }
-  return of_elements;
-}
-
 /// Whether each node follows others.
 std::vector<bool> tied_nodes(const Scene& scene) {
   std::vector<bool> tied(scene.mesh.points.size(), false);
@@ -196,6 +185,16 @@ NodalField make_initial_velocities(const Case& description, const Scene& scene,
 }
 
 }  // namespace
+
+std::vector<double> young_moduli(const Mesh& mesh, const Materials& materials) {
+  const std::vector<double> lambdas = lame_lambdas(materials), moduli = shear_moduli(materials);
+  std::vector<double> of_elements(mesh.cells.size());
+  for (std::size_t e = 0; e < of_elements.size(); ++e) {
+    const double lambda = lambdas[materials.of(e)], mu = moduli[materials.of(e)];
+    of_elements[e] = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+  }
+  return of_elements;
+}
 
 Mesh generate_mesh(const AnyGenerator& generator) {
   return std::visit([](const auto& g) { return g.build(); }, generator);

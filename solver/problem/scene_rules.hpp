@@ -21,4 +21,7 @@ void refine(const Case& description, Scene& scene);
 /// that is outside the elements, tied twice or also driven, and for a case that refines its mesh.
 void tie(const Case& description, Scene& scene);
 
+/// Young's modulus of each element's undeformed material, Pa.
+std::vector<double> young_moduli(const Mesh& mesh, const Materials& materials);
+
 }  // namespace sandglass

@@ -5,6 +5,8 @@
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "commands/deck_contacts.hpp"
+#include "forces/contact_force.hpp"
 #include "io/foreign_file.hpp"
 #include "io/mesh_file.hpp"
 #include "io/temporary_folder.hpp"
@@ -22,10 +24,14 @@ void require_expressible(const Scene& scene) {
   const auto refuse = [&](std::string_view what) {
     throw InputError(fmt::format("{}: {}", scene.settings.file.string(), what));
   };
-  if (const BodyForce* other = first_not_dead(scene.forces))
-    refuse(fmt::format("a deck cannot hold a {}; allowed are dead loads", other->traits().name));
-  if (!scene.ties.empty()) refuse("a deck cannot hold hanging nodes, which refinement and ties make");
+  for (const auto& force : scene.forces) {
+    if (!force->dead_loads().empty() || dynamic_cast<const ContactForce*>(force.get()) != nullptr) continue;
+    refuse(fmt::format("a deck cannot hold a {}; allowed are dead loads, obstacles and contact",
+                       force->traits().name));
+  }
   if (scene.settings.quasi_static) return;
+  if (!scene.ties.empty())
+    refuse("a deck of a dynamic case cannot hold hanging nodes of refinement and ties");
   if (!scene.initial_velocities.empty()) refuse("a deck cannot hold initial velocities");
   if (!scene.attached_masses.empty()) refuse("a deck cannot hold masses of a dynamic case");
   if (scene.angles.size() > 1) refuse("a deck cannot hold rotations of a dynamic case");
@@ -34,12 +40,13 @@ void require_expressible(const Scene& scene) {
   }
 }
 
-/// /problem/imposed (node, component, final value in m), /problem/forces (node and three components in N).
+/// /problem/imposed (node, component, final value in m), /problem/forces (node and three components in N),
+/// /problem/ties (node, another that it follows, the weight of this).
 void write_conditions(const Scene& scene, Hdf5File& file) {
   const auto write_rows = [&](const std::string& name, std::size_t width, const std::vector<double>& rows) {
     if (!rows.empty()) file.write(name, {rows.size() / width, width}, std::span<const double>(rows));
   };
-  std::vector<double> imposed, forces;
+  std::vector<double> imposed, forces, ties;
   for (const auto& constraint : scene.constraints) {
     imposed.insert(imposed.end(),
                    {static_cast<double>(constraint.node), static_cast<double>(constraint.component),
@@ -51,7 +58,12 @@ void write_conditions(const Scene& scene, Hdf5File& file) {
                   {static_cast<double>(node), factor * force[0], factor * force[1], factor * force[2]});
   }
   write_rows("/problem/imposed", 3, imposed);
+  for (const Tie& tie : scene.ties) {
+    for (const auto& [node, weight] : tie.mean_of)
+      ties.insert(ties.end(), {static_cast<double>(tie.node), static_cast<double>(node), weight});
+  }
   write_rows("/problem/forces", 4, forces);
+  write_rows("/problem/ties", 3, ties);
 }
 
 /// Attributes material.I.law, .density, .shear_modulus, .bulk_modulus, .volumetric and .parameter.NAME of
@@ -105,6 +117,7 @@ void write_deck(const Scene& scene, const std::filesystem::path& path, const Dec
   auto file = Hdf5File::create(source);
   write_mesh(scene, file);
   write_conditions(scene, file);
+  write_contacts(scene, file);
   write_materials(scene, file);
   write_motion(scene, file);
   file.commit();

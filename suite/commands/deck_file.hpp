@@ -15,8 +15,8 @@ struct DeckOptions {
   std::optional<double> hourglass;  ///< the program's hourglass coefficient; none: its usual value
 };
 
-/// Writes a scene as the input of another program: mesh, materials, imposed displacements, forces and, of a
-/// dynamic case, the motion. Throws InputError for what the program, or any deck, cannot express.
+/// Writes a scene as the input of another program: mesh, materials, imposed displacements, forces, contact
+/// and, of a dynamic case, the motion. Throws InputError for what the program, or any deck, cannot express.
 void write_deck(const Scene& scene, const std::filesystem::path& path, const DeckOptions& options);
 
 }  // namespace sandglass
