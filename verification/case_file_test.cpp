@@ -211,6 +211,8 @@ void change(Value& value) {
     value = !value;
   } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
     value = static_cast<Value>(static_cast<int>(value) + 1);
+  } else if constexpr (requires { Value::value_type::parameters(); }) {
+    value.emplace_back();
   } else {
     value.back() += 1;
   }

@@ -15,7 +15,7 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-/// Keeps the displacements at some times and the last energies; asks another observer whether to continue.
+/// Keeps the displacements at some times and the last energies and reactions; asks another observer whether to continue.
 class Sampler final : public Observer {
  public:
   Sampler(std::vector<double> times, Observer& other) : times_(std::move(times)), other_(other) {}
@@ -24,7 +24,10 @@ class Sampler final : public Observer {
     return u.size() < times_.size() ? times_[u.size()] : Observer::next_sample();
   }
   void sample(const NodalField& now) override { u.push_back(now); }
-  void history(const HistoryRow& row) override { energies = {row.strain, row.hourglass}; }
+  void history(const HistoryRow& row) override {
+    energies = {row.strain, row.hourglass};
+    reactions = row.reactions;
+  }
   void at_load(double factor) override { other_.at_load(factor); }
   bool proceed(long step, double share, double residual) override {
     return other_.proceed(step, share, residual);
@@ -32,6 +35,7 @@ class Sampler final : public Observer {
 
   Displacements u;
   StrainEnergies energies;
+  Reactions reactions;
 
  private:
   std::vector<double> times_;
@@ -43,13 +47,16 @@ Answer moving_answer(const Model& model, Observer& observer) {
   const Motion motion = integrate(model, sampler);
   return {.u = std::move(sampler.u),
           .energies = sampler.energies,
+          .reactions = std::move(sampler.reactions),
           .steps = motion.steps,
           .seconds = motion.seconds};
 }
 
 Answer resting_answer(const Model& model, Observer& observer) {
-  Relaxation relaxation = relax(model, observer);
+  Sampler sampler({}, observer);
+  Relaxation relaxation = relax(model, sampler);
   Answer answer{.energies = relaxation.energies,
+                .reactions = std::move(sampler.reactions),
                 .steps = relaxation.steps,
                 .residual = relaxation.residual,
                 .seconds = relaxation.seconds};

@@ -14,6 +14,7 @@ namespace sandglass {
 struct Answer {
   Displacements u;                      ///< m, at the answer's times; empty if the computation broke down
   StrainEnergies energies;              ///< J, at the last of them
+  Reactions reactions = {};             ///< N, at the last of them; see HistoryRow
   std::optional<Finding> failure = {};  ///< how it broke down, or that it is not in equilibrium
   bool refused = false;                 ///< the method does not support this case
   std::string status = "ok";            ///< or the reason why not

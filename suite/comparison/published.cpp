@@ -115,6 +115,10 @@ std::vector<PublishedResult> published_results(const Scene& scene, const std::ve
   std::vector<PublishedResult> results;
   for (const auto& published : values) {
     PublishedResult result{published, {}, {}, {}};
+    if (!published.obstacles.empty()) {  // references are displacements
+      results.push_back(std::move(result));
+      continue;
+    }
     if (truth) result.truth = computed_value(scene, *truth, published);
     if (golden) result.golden = computed_value(scene, *golden, published);
     results.push_back(std::move(result));
@@ -122,8 +126,18 @@ std::vector<PublishedResult> published_results(const Scene& scene, const std::ve
   return results;
 }
 
-void fill_computed(const Scene& scene, const Displacements& u, std::vector<PublishedResult>& results) {
-  for (auto& result : results) result.computed = computed_value(scene, u, result.published);
+void fill_computed(const Scene& scene, const Displacements& u, const Reactions& reactions,
+                   std::vector<PublishedResult>& results) {
+  for (auto& [published, computed, truth, golden] : results) {
+    if (published.obstacles.empty()) {
+      computed = computed_value(scene, u, published);
+      continue;
+    }
+    if (reactions.empty()) continue;
+    computed = 0.0;
+    for (const std::string& obstacle : published.obstacles)
+      *computed += reactions.at(obstacle)[static_cast<std::size_t>(published.component[0] - 'x')];
+  }
 }
 
 std::optional<double> largest_relative_error(const std::vector<PublishedResult>& results, bool measured,
