@@ -49,14 +49,13 @@ std::vector<Thin> thin_obstacles(double t, const TemporaryFolder& folder) {
       for (const double d : {-t, t}) oblique += fmt::format("v {} {} {}\n", s - d, s + d, z);
   }
   oblique += "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
-  return {
-      {{.shape = Shape::sphere, .radius = t}, RoundShape{{}, {}, 0.0, 0.0, t}},
-      {{.shape = Shape::capsule, .end = end, .radius = t}, RoundShape{{}, end, 0.0, 1.0, t}},
-      {{.shape = Shape::cylinder, .end = end, .radius = t}, RoundShape{{}, end, -INFINITY, INFINITY, t}},
-      {{.shape = Shape::box, .half_sizes = sizes}, BoxShape{{}, sizes}},
-      {{.shape = Shape::ellipsoid, .half_sizes = sizes}, EllipsoidShape{{}, sizes}},
-      surface_obstacle(folder, "plate.obj", box_surface(sizes)),
-      surface_obstacle(folder, "oblique.obj", oblique)};
+  return {{{.shape = Shape::sphere, .radius = t}, RoundShape{{}, {}, 0.0, 0.0, t}},
+          {{.shape = Shape::capsule, .end = end, .radius = t}, RoundShape{{}, end, 0.0, 1.0, t}},
+          {{.shape = Shape::cylinder, .end = end, .radius = t}, RoundShape{{}, end, -INFINITY, INFINITY, t}},
+          {{.shape = Shape::box, .half_sizes = sizes}, BoxShape{{}, sizes}},
+          {{.shape = Shape::ellipsoid, .half_sizes = sizes}, EllipsoidShape{{}, sizes}},
+          surface_obstacle(folder, "plate.obj", box_surface(sizes)),
+          surface_obstacle(folder, "oblique.obj", oblique)};
 }
 
 enum class Step { kinematic, penalty, level };
@@ -113,8 +112,8 @@ double nearest_on(const Thin& thin, const Vector& from, const Vector& way) {
 }
 
 /// A way without an error ends inside, where the obstacle pushes back to the side of the start, or outside,
-/// on this side, and cuts at most a corner, of a tenth of half the thickness. A way that is always outside, by
-/// more than the resolution, is no error.
+/// on this side, and cuts at most a corner, of a tenth of half the thickness. A way that is always outside,
+/// by more than the resolution, is no error.
 TEST(ObstacleCrossing, no_node_leaps_over_an_obstacle_in_silence) {
   const TemporaryFolder folder;
   RandomGeometry random(47);
@@ -139,11 +138,11 @@ TEST(ObstacleCrossing, no_node_leaps_over_an_obstacle_in_silence) {
           EXPECT_LT(nearest, rounding);
           ++leapt;
         } else if (end.distance > rounding) {
-          const bool turned = dot(start.normal, end.normal) < -1e-2;
+          const bool turned = dot(start.normal, end.normal) < -0.02;
           EXPECT_GT(nearest, turned ? -rounding : -0.1 * thin.half() - rounding);
           ++clear;
         } else if (end.distance < -rounding) {
-          EXPECT_GT(dot(start.normal, end.normal), -1e-2);
+          EXPECT_GT(dot(start.normal, end.normal), -0.02);
           EXPECT_GT(end.distance, -0.8 * thin.half() - rounding);
           ++touched;
         }

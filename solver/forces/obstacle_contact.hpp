@@ -164,7 +164,8 @@ inline bool ObstacleContact::passes(const Vector& x, const Gap& gap, const Vecto
   if (gap.distance >= far) return false;
   const Gap start = gap_at(difference(x, way));
   if (start.distance + gap.distance >= far) return false;
-  const bool turned = dot(start.normal, gap.normal) < 0.0;
+  constexpr double beyond_right_angle = -0.01;  // as sides of a box are, to the rounding of a file
+  const bool turned = dot(start.normal, gap.normal) < beyond_right_angle;
   if (gap.distance < 0.0) return turned;
   if (!turned && far < 2.0 * shallow * half) return false;
   constexpr double finest = 1e-3;  // of the way

@@ -15,7 +15,8 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-/// Keeps the displacements at some times and the last energies and reactions; asks another observer whether to continue.
+/// Keeps the displacements at some times and the last energies, and the reactions at all checks; asks another
+/// observer whether to continue.
 class Sampler final : public Observer {
  public:
   Sampler(std::vector<double> times, Observer& other) : times_(std::move(times)), other_(other) {}
@@ -26,7 +27,7 @@ class Sampler final : public Observer {
   void sample(const NodalField& now) override { u.push_back(now); }
   void history(const HistoryRow& row) override {
     energies = {row.strain, row.hourglass};
-    reactions = row.reactions;
+    checks.push_back({row.time, row.reactions});
   }
   void at_load(double factor) override { other_.at_load(factor); }
   bool proceed(long step, double share, double residual) override {
@@ -35,7 +36,7 @@ class Sampler final : public Observer {
 
   Displacements u;
   StrainEnergies energies;
-  Reactions reactions;
+  std::vector<ReactionsAt> checks;
 
  private:
   std::vector<double> times_;
@@ -47,7 +48,7 @@ Answer moving_answer(const Model& model, Observer& observer) {
   const Motion motion = integrate(model, sampler);
   return {.u = std::move(sampler.u),
           .energies = sampler.energies,
-          .reactions = std::move(sampler.reactions),
+          .checks = std::move(sampler.checks),
           .steps = motion.steps,
           .seconds = motion.seconds};
 }
@@ -56,7 +57,7 @@ Answer resting_answer(const Model& model, Observer& observer) {
   Sampler sampler({}, observer);
   Relaxation relaxation = relax(model, sampler);
   Answer answer{.energies = relaxation.energies,
-                .reactions = std::move(sampler.reactions),
+                .checks = std::move(sampler.checks),
                 .steps = relaxation.steps,
                 .residual = relaxation.residual,
                 .seconds = relaxation.seconds};

@@ -38,6 +38,7 @@ struct PublishedValue {
   std::optional<Vector> at = {};       ///< instead of the mean: a point that moves with the set, m
   Feature of = Feature::end;
   std::vector<std::string> obstacles = {};  ///< whose forces on the body add up to the value; empty: a motion
+  double over = 0.0;  ///< s, at the end, over which a force is the mean of all checks; 0: at the last one
 };
 
 /// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.

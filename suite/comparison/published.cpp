@@ -126,17 +126,29 @@ std::vector<PublishedResult> published_results(const Scene& scene, const std::ve
   return results;
 }
 
-void fill_computed(const Scene& scene, const Displacements& u, const Reactions& reactions,
+std::optional<double> force_of(const std::vector<ReactionsAt>& checks, const PublishedValue& published) {
+  if (checks.empty()) return std::nullopt;
+  const auto axis = static_cast<std::size_t>(published.component[0] - 'x');
+  const auto force_at = [&](const ReactionsAt& check) {
+    double sum = 0.0;
+    for (const std::string& obstacle : published.obstacles) sum += check.reactions.at(obstacle)[axis];
+    return sum;
+  };
+  const double start = checks.back().time - published.over;
+  double impulse = 0.0, time = 0.0;
+  for (std::size_t k = 1; k < checks.size(); ++k) {
+    if (checks[k - 1].time < start) continue;
+    impulse += (checks[k].time - checks[k - 1].time) * force_at(checks[k]);
+    time += checks[k].time - checks[k - 1].time;
+  }
+  return time > 0.0 ? impulse / time : force_at(checks.back());
+}
+
+void fill_computed(const Scene& scene, const Displacements& u, const std::vector<ReactionsAt>& checks,
                    std::vector<PublishedResult>& results) {
   for (auto& [published, computed, truth, golden] : results) {
-    if (published.obstacles.empty()) {
-      computed = computed_value(scene, u, published);
-      continue;
-    }
-    if (reactions.empty()) continue;
-    computed = 0.0;
-    for (const std::string& obstacle : published.obstacles)
-      *computed += reactions.at(obstacle)[static_cast<std::size_t>(published.component[0] - 'x')];
+    computed =
+        published.obstacles.empty() ? computed_value(scene, u, published) : force_of(checks, published);
   }
 }
 

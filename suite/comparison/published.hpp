@@ -47,8 +47,18 @@ std::vector<PublishedResult> published_results(const Scene& scene, const std::ve
                                                const std::optional<Displacements>& truth,
                                                const std::optional<Displacements>& golden);
 
-/// Fills in the values computed from displacements u (m) of the scene and its reactions (N) at the end.
-void fill_computed(const Scene& scene, const Displacements& u, const Reactions& reactions,
+/// The reactions (N) of an answer at a check; see HistoryRow.
+struct ReactionsAt {
+  double time;  ///< s; in static equilibrium, as of a HistoryRow
+  Reactions reactions;
+};
+
+/// The force (N) for which a value is published, from the reactions at all checks: the sum over its
+/// obstacles, at the last check or its mean in time; none without a check.
+std::optional<double> force_of(const std::vector<ReactionsAt>& checks, const PublishedValue& published);
+
+/// Fills in the values computed from displacements u (m) of the scene and from the reactions at its checks.
+void fill_computed(const Scene& scene, const Displacements& u, const std::vector<ReactionsAt>& checks,
                    std::vector<PublishedResult>& results);
 
 /// The largest |computed / published - 1| of published or measured values, and either of periods or of the
