@@ -349,8 +349,7 @@ def _obstacle(where, table, moving):
     keys = {"displacement": (0.0, 0.0, 0.0), "inside": False, "penalty": Obstacle.penalty}
     name, moved, *rest = _read(where, table, *others, set=str, **keys).values()
     legs = [(where, table, moved)]
-    for n, move in enumerate(table.get("move", ())):
-        place = f"{where}.move {n}"
+    for place, move in entries(where, table, "move") if "move" in table else ():
         legs.append((place, move, _read(place, move, *CURVE, displacement=tuple)["displacement"]))
     moved = sum(factor_and_curve(*leg, moving)[0] * np.array(way) for *leg, way in legs)
     own = _read(where, table, *table, **own)
