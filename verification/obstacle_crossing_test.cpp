@@ -11,6 +11,7 @@
 #include "sandglass/simulation.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
+#include "support/case_text.hpp"
 #include "support/obstacles.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/temporary_folder.hpp"
@@ -204,6 +205,24 @@ TEST(ObstacleCrossing, thrown_and_pressed_bodies_stay_on_their_side) {
     }
   }
   EXPECT_GT(std::min(ended, touched), 20);
+}
+
+/// In a program as well: a plate of a hundredth of the way of a step. The body is back at the last check.
+TEST(ObstacleCrossing, ends_the_motion_of_a_program) {
+  const TemporaryFolder folder;
+  for (const std::string method : {"kinematic", "penalty"}) {
+    const auto file = folder.write(
+        "a.toml", replaced(box_case("thrown", "[0.1, 0.1, 0.1]", "[2, 2, 2]"), "quasi-static", "dynamic") +
+                      fmt::format("[sets]\nfoot = {{ z = [0.0, 0.0] }}\n"
+                                  "[[velocity]]\nvalue = [0.0, 0.0, -20.0]\n"
+                                  "[[obstacle]]\nname = \"plate\"\nset = \"foot\"\nshape = \"box\"\n"
+                                  "point = [0.05, 0.05, -0.03]\nhalf_sizes = [0.5, 0.5, 0.0003]\n"
+                                  "method = \"{}\"\npenalty = 1e-3\n[dynamics]\nduration = 1.0\n",
+                                  method));
+    Simulation<double> body(file);
+    EXPECT_THROW(body.advance(0.01), ComputationError) << method;
+    EXPECT_LT(body.time(), 0.01);
+  }
 }
 
 }  // namespace
