@@ -135,15 +135,22 @@ void print_parts(const Scene& scene, const std::string& of) {
   fmt::print("{}parts: {}\n", of, fmt::join(words, "; "));
 }
 
-/// A note on each set of the mesh's file that a rule of the case replaces by another.
+/// A note on each set of the mesh, from its file or of its bodies, that a rule of the case replaces by
+/// another.
 void print_replaced_sets(const CaseOnMesh& problem, const Scene& scene, const std::string& of) {
-  if (!problem.description.refinements.empty()) return;  // which add nodes to sets
-  for (const NodeSetRule& rule : problem.description.sets) {
-    const auto own = problem.sets.find(rule.name);
-    if (own == problem.sets.end() || own->second == scene.sets.at(rule.name)) continue;
-    fmt::print("note: {}sets.{} ({}) replaces the set of that name in the mesh's file ({})\n", of, rule.name,
-               plural(scene.sets.at(rule.name).size(), "node"), plural(own->second.size(), "node"));
-  }
+  if (!problem.description.refinements.empty()) return;  // which add to sets
+  const auto print = [&](const char* table, const char* unit, const auto& rules, const auto& before,
+                         const auto& now) {
+    for (const NodeSetRule& rule : rules) {
+      const auto own = before.find(rule.name);
+      if (own == before.end() || own->second == now.at(rule.name)) continue;
+      fmt::print("note: {}{}.{} ({}) replaces the set of that name in the mesh ({})\n", of, table, rule.name,
+                 plural(now.at(rule.name).size(), unit), plural(own->second.size(), unit));
+    }
+  };
+  print("sets", "node", problem.description.sets, problem.sets, scene.sets);
+  print("element_sets", "element", problem.description.element_sets, problem.element_sets,
+        scene.element_sets);
 }
 
 /// The boundary of a scene without the faces of two surfaces that a [[contact]] keeps apart.

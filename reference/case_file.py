@@ -345,12 +345,15 @@ def _obstacle(where, table, moving):
     if shape not in SHAPES:
         raise InputError(f"{where}.shape = {shape!r} is not known; {suggestion(shape, SHAPES)}")
     own = {key: float if key == "radius" else tuple for key in shape_keys(shape)}
-    others = (*CURVE, "name", "shape", "method", "friction", *own)
+    others = (*CURVE, "name", "shape", "method", "friction", "move", *own)
     keys = {"displacement": (0.0, 0.0, 0.0), "inside": False, "penalty": Obstacle.penalty}
     name, moved, *rest = _read(where, table, *others, set=str, **keys).values()
-    factor, _ = factor_and_curve(where, table, moving)
+    legs = [(where, table, moved)]
+    for place, move in entries(where, table, "move") if "move" in table else ():
+        legs.append((place, move, _read(place, move, *CURVE, displacement=tuple)["displacement"]))
+    moved = sum(factor_and_curve(*leg, moving)[0] * np.array(way) for *leg, way in legs)
     own = _read(where, table, *table, **own)
-    return Obstacle(name, shape, own, tuple(factor * v for v in moved), *rest)
+    return Obstacle(name, shape, own, tuple(moved.tolist()), *rest)
 
 
 def _contact(where, table, moving):

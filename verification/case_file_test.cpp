@@ -211,6 +211,8 @@ void change(Value& value) {
     value = !value;
   } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
     value = static_cast<Value>(static_cast<int>(value) + 1);
+  } else if constexpr (requires { Value::value_type::parameters(); }) {
+    value.emplace_back();
   } else {
     value.back() += 1;
   }
@@ -411,6 +413,16 @@ const std::string published =
 std::string measured(const std::string& keys) {
   return "[[measured]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n" + keys;
 }
+
+/// An obstacle above the body.
+const std::string pressed =
+    "[[obstacle]]\nname = \"tool\"\nset = \"top\"\nshape = \"plane\"\npoint = [0, 0, 4.0]\n"
+    "normal = [0, 0, -1.0]\n";
+
+/// A published force.
+std::string force(const std::string& of, const std::string& component) {
+  return fmt::format("[[published]]\n{}\ncomponent = \"{}\"\nvalue = 1.0\nsource = \"a\"\n", of, component);
+}
 const std::string program = "[[published.programs]]\nprogram = \"b\"\nsource = \"c\"\n";
 
 struct BadCase {
@@ -535,6 +547,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"two_bodies_of_one_name",
                 replaced(two_bodies, "\"two\"", "\"one\""),
                 {"mesh.bodies.name = 'one' appears twice; every body needs its own name"}},
+        BadCase{"bodies_that_overlap",
+                replaced(two_bodies, "offset = [0.0, 0.0, 3.0]", "offset = [0.1, 0.0, 2.0]"),
+                {"mesh.bodies: the point (", "is in two bodies; allowed: bodies that do not intersect"}},
         BadCase{"bodies_beside_a_generator",
                 replaced(two_bodies, "[[mesh.bodies]]\nname = \"one\"",
                          "[mesh]\ngenerator = \"box\"\n\n[[mesh.bodies]]\nname = \"one\""),
@@ -594,6 +609,32 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"published_zero",
                 good + "[[published]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 0.0\nsource = \"a\"\n",
                 {"published.value = 0 must not be zero"}},
+        BadCase{"force_of_an_unknown_obstacle",
+                good + force("obstacles = [\"tool\"]", "z"),
+                {"published.obstacles: 'tool' is not an obstacle"}},
+        BadCase{"force_of_a_set",
+                good + force("obstacles = [\"tool\"]\nset = \"top\"", "z"),
+                {"published.obstacles was given with set"}},
+        BadCase{"mean_force_at_rest",
+                good + pressed + force("obstacles = [\"tool\"]\nover = 0.1", "z"),
+                {"published.over = 0.1 s is more than the duration"}},
+        BadCase{"move_without_a_displacement",
+                good + pressed + "[[obstacle.move]]\ntimes = [0.0]\nfactors = [1.0]\n",
+                {"obstacle.move.displacement is missing"}},
+        BadCase{"move_with_a_longer_list",
+                good + pressed +
+                    "[[obstacle.move]]\ndisplacement = [0, 0, 1]\ntimes = [0.0, 1.0]\nfactors = [1.0]\n",
+                {"obstacle.move.times needs times and factors, one factor for each time"}},
+        BadCase{
+            "move_with_a_table_and_a_formula",
+            good + pressed + "[[obstacle.move]]\ndisplacement = [0, 0, 1]\ntimes = [0.0]\nformula = \"t\"\n",
+            {"obstacle.move.formula was given with times or factors"}},
+        BadCase{"curve_of_no_displacement",
+                good + pressed + "times = [0.0]\nfactors = [1.0]\n",
+                {"obstacle.displacement is needed with times"}},
+        BadCase{"force_around_an_axis",
+                good + force("obstacles = [\"tool\"]", "around-z"),
+                {"published.obstacles add up to a force, which has a component x, y or z"}},
         BadCase{"published_component",
                 good + "[[published]]\nset = \"top\"\ncomponent = \"w\"\nvalue = 1.0\nsource = \"a\"\n",
                 {"published.component = 'w' is not known", "x, y, z, around-x"}},

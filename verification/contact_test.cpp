@@ -197,19 +197,7 @@ TEST(Contact, measures_distances) {
   expect(box, {-2.0, 1.0, 8.0}, std::sqrt(20.0), {-2.0 / std::sqrt(20.0), 0.0, 4.0 / std::sqrt(20.0)});
 }
 
-/// The surface of a box with its centre at the origin: two triangles on each side, as the text of an .obj
-/// file.
-std::string box_surface(const Vector& half_sizes) {
-  std::string text = "# a box\n";
-  for (int corner = 0; corner < 8; ++corner) {
-    text +=
-        fmt::format("v {} {} {}\n", corner & 1 ? half_sizes[0] : -half_sizes[0],
-                    corner & 2 ? half_sizes[1] : -half_sizes[1], corner & 4 ? half_sizes[2] : -half_sizes[2]);
-  }
-  return text + "f 1 3 4 2\nf 5/1 6/1 8/1 7/1\nf 1 2 6\nf 1 6 5\nf 3 7 8 4\nf 1 5 7 3\nf -7 -5 -1\nf 2 8 6\n";
-}
-
-/// The same as an .stl file, as text or binary: of the triangles that an .obj file lists one by one.
+/// `box_surface` as an .stl file, as text or binary: of the triangles that an .obj file lists one by one.
 std::string as_stl(const NodalField& corners, bool binary) {
   std::string text = binary ? std::string(80, ' ') : "solid box\n";
   const auto add = [&](const auto& value) {

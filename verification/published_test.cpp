@@ -109,8 +109,37 @@ std::vector<PublishedResult> results(const Vector& move) {
   const NodalField u(scene.mesh.points.size(), move), truth(u.size(), Vector{0.4, 0.0, -0.125});
   auto found = published_results(scene, {value_of("x", 0.5), value_of("z", -0.2)}, Displacements{truth}, {});
   EXPECT_FALSE(largest_relative_error(found).has_value());
-  fill_computed(scene, {u}, found);
+  fill_computed(scene, {u}, {}, found);
   return found;
+}
+
+/// Forces are those of the reactions, not of displacements, and references have none.
+TEST(Published, forces_of_obstacles_add_up) {
+  PublishedValue weight = value_of("z", 8.0);
+  weight.obstacles = {"left", "right"};
+  const Scene scene = block();
+  const Displacements u{NodalField(scene.mesh.points.size(), Vector{1.0, 1.0, 1.0})};
+  auto found = published_results(scene, {weight}, u, u);
+  fill_computed(scene, u, {}, found);
+  EXPECT_FALSE(found[0].truth || found[0].golden || found[0].computed);
+  const Reactions last{{"left", {1, 0, 3}}, {"right", {-1, 0, 4}}, {"table", {0, 0, 9}}};
+  fill_computed(scene, u, {{0.0, {}}, {1.0, last}}, found);
+  EXPECT_EQ(found[0].computed, 7.0);
+}
+
+/// A mean over time counts each force for the time since the check before.
+TEST(Published, mean_force_at_the_end) {
+  PublishedValue weight = value_of("x");
+  weight.obstacles = {"jaw"};
+  const auto at_time = [](double time, double force) {
+    return ReactionsAt{time, {{"jaw", {force, 0.0, 0.0}}}};
+  };
+  const std::vector<ReactionsAt> checks{at_time(0, 90), at_time(1, 80), at_time(3, 5), at_time(4, 8)};
+  EXPECT_EQ(force_of(checks, weight), 8.0);
+  weight.over = 3.0;
+  EXPECT_EQ(force_of(checks, weight), (2.0 * 5.0 + 8.0) / 3.0);
+  weight.over = 4.0;
+  EXPECT_EQ(force_of(checks, weight), (80.0 + 2.0 * 5.0 + 8.0) / 4.0);
 }
 
 TEST(Published, ratios_and_the_largest_error) {

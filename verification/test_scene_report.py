@@ -164,9 +164,7 @@ def test_a_rule_that_replaces_a_set_of_the_file_is_noted(tmp_path):
         (tmp_path / "a.inp").write_text(two_cubes(0.0) + f"*NSET, NSET={name}\n1, 2\n")
         (tmp_path / "a.toml").write_text(on_mesh("a.inp").replace("0.02, 0.0, 0.01", "0, 0, 0.02"))
         outcome = sandglass("run", tmp_path / "a.toml", code=0)
-        note = (
-            "note: sets.head (4 nodes) replaces the set of that name in the mesh's file (2 nodes)"
-        )
+        note = "note: sets.head (4 nodes) replaces the set of that name in the mesh (2 nodes)"
         assert (note in outcome.stdout) == (name == "head")
 
 

@@ -240,6 +240,11 @@ displacement = [0.0, 0.0, -2.0]
 times = [0.0, 2.0]
 factors = [0.0, 1.0]
 penalty = 7.0
+[[obstacle.move]]
+displacement = [0.5, 0.0, 0.0]
+[[obstacle.move]]
+displacement = [0.0, 3.0, -1.0]
+formula = "t/2"
 [[obstacle]]
 set = "all"
 shape = "ellipsoid"
@@ -257,13 +262,14 @@ penalty = 2.0
     assert case.contacts == (CasePair("top", "bottom"),)
     tool, room = case.obstacles
     ends = {"point": (0.0, 0.0, 1.0), "end": (1.0, 0.0, 1.0), "radius": 0.5}
-    assert tool == Obstacle("top", "capsule", ends, (0.0, 0.0, -1.0), penalty=7.0)
+    assert tool == Obstacle("top", "capsule", ends, (0.5, 1.5, -1.5), penalty=7.0)
     assert room.inside and room.parameters["half_sizes"] == (3.0, 2.0, 1.0)
     for wrong, message, error in (
         ("capsule", "cone", "shape = 'cone' is not known"),
         ("radius = 0.5", "", "radius"),
         ("penalty", "friction", "friction"),
         ("inside", "outside", "unknown key"),
+        ('"t/2"', '"t/2"\nradius = 1', r"obstacle\[0\]\S*move\[1\].radius: unknown key"),
         ('name = "press"', 'name = "press", answer = "dynamic"', "motion"),
         ('other = "bottom"', "", "contact.*other"),
         ("penalty = 2.0", "friction = 0.1", "with friction is not supported"),

@@ -166,6 +166,7 @@ def _of_verdicts(inputs, palette):
         "kappa": {s.name: kappa.kappa_panels(s, palette) for s in subjects},
         "kappa_methods": dict.fromkeys(run.method for run in verdicts.runs if not run.is_main),
         "tip_tables": tips.tip_tables(verdicts.tips),
+        "force_tables": tips.tip_tables(verdicts.tips, of="force"),
         "viewer": viewer.viewer_data(subjects),
         "paper_method": paper.METHOD,
         "paper_figures": paper.FIGURES,

@@ -1,4 +1,4 @@
-"""Tables of computed over published displacements: beams, panels, bending."""
+"""Tables of computed over published displacements and forces: beams, panels, bending, contact."""
 
 from dataclasses import dataclass
 
@@ -19,13 +19,15 @@ class TipTable:
         return tip.to_truth if self.reference == "the truth" else tip.to_published
 
 
-def tip_tables(tips):
+def tip_tables(tips, of="end"):
     """The tables of all families, in the order of the file; relative to the truth if available.
+
+    of: what the values are of, "end" for displacements and rotations, "force" of obstacles.
 
     Families with known values of other programs have their own tables (published.py), and measured
     values their own plate (experiment.py).
     """
-    tips = [tip for tip in tips if not tip.programs and tip.scatter is None]
+    tips = [t for t in tips if not t.programs and t.scatter is None and t.of == of]
     tables = []
     for family in dict.fromkeys(tip.family for tip in tips):
         own = [tip for tip in tips if tip.family == family]

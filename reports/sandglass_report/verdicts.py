@@ -89,7 +89,7 @@ class Tip:
     computed: float | None
     programs: tuple
     scatter: float | None  # of a measured value; None for other published values
-    of: str  # "end" or, of a motion, "peak" or "period"
+    of: str  # "end" or, of a motion, "peak" or "period"; "force" of obstacles
     golden: float | None
     seconds: float | None  # to equilibrium or, of a case in motion, of the motion
     to_published: float | None = key("ratio")

@@ -182,6 +182,15 @@ def test_published_benchmarks_are_not_among_the_tips(data):
     assert "No run had a published value" in section(data.make(), "bending")
 
 
+def test_forces_of_obstacles_are_in_the_section_of_contact(data):
+    data.published.append(data.tip("tl-none", 0.875))
+    data.published[0]["values"][0]["of"] = "force"
+    data.write_verdicts()
+    page = data.make()
+    assert "No run had a published value" in section(page, "bending")
+    assert "0.875" in section(page, "contact")
+
+
 def maps(finding="locking"):
     """A document of sandglass stability with one map of two cells."""
     axis = {"name": "load", "meaning": "what it is", "values": [1.0, 2.0]}

@@ -40,7 +40,7 @@ struct Contact {
                   "node set of the second surface; without it, the first may touch itself", false},
         Parameter{&C::friction, "friction", "-", Range::at_least(0.0), "Coulomb's coefficient", false},
         Parameter{&C::curve, "curve", "-", Range::any(),
-                  "factor of the friction over time, not negative; without it, friction is constant", false},
+                  "they multiply the friction and must not be negative; without them, it is constant", false},
         Parameter{&C::penalty, "penalty", "-", Range::positive(),
                   "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of "
                   "the elements at both surfaces; 30 times that in static equilibrium",

@@ -70,8 +70,9 @@ inline Touch touch_of(std::string_view name, const Row<double>* memory) {
           static_cast<int>(turns[3]) - 1};
 }
 
-/// The share of the depth that a contact can follow from which no step leads to the outside.
-constexpr double deep = 0.8;
+/// The share of the depth that a contact can follow from which no step leads to the outside, and up to which
+/// a node may cut a corner of an obstacle within a step.
+constexpr double deep = 0.8, shallow = 0.1;
 
 /// The square of the frequency that steps must allow for over that of a spring that only pushes: it returns a
 /// node with more than its energy if the step ends its contact too late. With steps of 1.8 over its
@@ -189,8 +190,8 @@ class ContactForce : public BodyForce {
   /// How far nodes may be inside of it and still be pushed back to where they came from, m.
   virtual double half_thickness() const = 0;
 
-  /// How far it moves at the factor one, m.
-  virtual double travel() const = 0;
+  /// The longest way (m) that it moves while the factors of curves change by at most so much.
+  virtual double travel(Factors changes) const = 0;
 
   /// How a program may move it; none: not at all.
   virtual std::optional<Movable> movable() const { return std::nullopt; }

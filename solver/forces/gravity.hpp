@@ -17,7 +17,8 @@ struct Gravity {
   static constexpr auto parameters() {
     using G = Gravity;
     return std::tuple{Parameter{&G::value, "value", "m/s^2", Range::any(), "acceleration"},
-                      Parameter{&G::curve, "curve", "-", Range::any(), "factor over time", false}};
+                      Parameter{&G::curve, "curve", "-", Range::any(),
+                                "they multiply the load, in place of the loading curve of the case", false}};
   }
 
   void resolve(ForceResolver& resolver) const;

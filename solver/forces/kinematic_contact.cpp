@@ -22,11 +22,10 @@ class KinematicContact final : public ObstacleContact {
   /// obstacle is lost.
   void push_out(Factors factors, const NodalPush& nodes) const override {
     ContactMemory memory(nodes.memory);
-    const Vector moved = displacement(factors);
+    const Vector moved = path_.at(factors);
     Row<double>&position = memory.others[0], &last_of_obstacle = memory.others[1];
     const Vector of_obstacle = difference(moved, {position[0], position[1], position[2]});
     memory.clear_forces();
-    const double half = half_thickness();
     for_each_node(moved, nodes.u, [&](std::size_t k, const Vector& x, const auto& compute_gap) {
       const int node = nodes_[k].node;
       Row<double>&last = memory.others[own + 2 * k], &known = memory.others[own + 2 * k + 1];
@@ -39,7 +38,7 @@ class KinematicContact final : public ObstacleContact {
       const bool first = position[3] == 0.0;
       if (first) last = row_of(sum({}, 0.5, motion));  // its force acts for half a step
       const Gap gap = compute_gap();
-      if (gap.distance < -deep * half || leaps(gap, x, motion, half)) memory.note_passed(node);
+      if (passes(x, gap, motion)) memory.note_passed(node);
       if (gap.distance < 0.0) {
         const Vector start = first || known[3] > 0.0 ? gap_at(difference(x, motion)).normal
                                                      : Vector{known[0], known[1], known[2]};
@@ -75,11 +74,6 @@ class KinematicContact final : public ObstacleContact {
                    std::vector<Spring>& /*springs*/) const override {}
   std::size_t memory() const override { return ContactMemory::own + own + 2 * nodes_.size(); }
 
-  void begin_again(const Vector& force, const Vector& moment, Row<double>* rows) const override {
-    ContactForce::begin_again(force, moment, rows);
-    ContactMemory(rows).others[0] = {};
-  }
-
  private:
   static constexpr std::size_t own = 2;
 
@@ -93,19 +87,7 @@ class KinematicContact final : public ObstacleContact {
   static Row<double> row_of(const Vector& v) { return {{v[0], v[1], v[2], 0.0}}; }
 
   std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
-    return make_kinematic_contact(std::move(nodes), obstacle_, shape_, curves_, start_);
-  }
-
-  /// Whether a node that moves by more than half the thickness (m) in a step passes through the obstacle.
-  bool leaps(const Gap& end, const Vector& x, const Vector& motion, double half) const {
-    const double way = length(motion);
-    if (!(way > half) || end.distance < 0.0 || end.distance > way) return false;
-    constexpr double most = 1000.0;  // of a motion without end
-    const int places = static_cast<int>(std::min(way / half, most));
-    for (int k = 1; k <= places; ++k) {
-      if (gap_at(sum(x, -k / (places + 1.0), motion)).distance < -rounding_) return true;
-    }
-    return false;
+    return make_kinematic_contact(std::move(nodes), obstacle_, shape_, path_);
   }
 
   /// The direction of the force on a node: the normal where the step starts, as forces act there. Over the
@@ -140,8 +122,8 @@ class KinematicContact final : public ObstacleContact {
 
 std::shared_ptr<ObstacleContact> make_kinematic_contact(std::vector<TouchingNode> nodes,
                                                         const Obstacle& obstacle, const ObstacleShape& shape,
-                                                        const ObstacleCurves& curves, const Vector& start) {
-  return std::make_shared<KinematicContact>(std::move(nodes), obstacle, shape, curves, start,
+                                                        ObstaclePath path) {
+  return std::make_shared<KinematicContact>(std::move(nodes), obstacle, shape, std::move(path),
                                             ForceTraits{Obstacle::name, false, true, in_steps});
 }
 

@@ -14,7 +14,8 @@ namespace sandglass {
 
 /// The factor of a load over time: a table, linear between its points and constant outside, or a formula.
 /// Without either it is the load factor of the case. In a quasi-static answer, time is the share of the load,
-/// 0 to 1.
+/// 0 to 1. The declaration of a curve says what
+/// its factors multiply.
 struct LoadCurve {
   std::vector<double> times = {};  ///< s, increasing
   std::vector<double> factors = {};
@@ -25,11 +26,11 @@ struct LoadCurve {
     using C = LoadCurve;
     return std::tuple{
         Parameter{&C::times, "times", "s", Range::at_least(0.0),
-                  "increasing times of the factors, which replace the loading curve of the case; in a "
-                  "quasi-static answer, time is the share of the load, 0 to 1",
+                  "increasing times of the factors; in a quasi-static answer, time is the share of the load, "
+                  "0 to 1",
                   false},
         Parameter{&C::factors, "factors", "-", Range::any(),
-                  "factors of the load at these times, linear in between and constant outside", false},
+                  "factors at these times, linear in between and constant outside", false},
         Parameter{
             &C::formula, "formula", "-", Range::any(),
             "instead of a table, a factor as a function of the time t in s, such as \"sin(2*pi*t) * t\"",
@@ -66,6 +67,18 @@ struct LoadCurve {
     const auto n = static_cast<std::size_t>(above - times.begin());
     const double part = (time - times[n - 1]) / (times[n] - times[n - 1]);
     return share * (factors[n - 1] + part * (factors[n] - factors[n - 1]));
+  }
+
+  /// The largest change per share of a quasi-static load; for a formula, between 1001 equidistant shares.
+  double steepest() const {
+    if (!formula.evaluate && times.empty()) return std::abs(share);
+    double most = 0.0;
+    for (int k = 0; formula.evaluate && k < 1000; ++k)
+      most =
+          std::max(most, 1000 * std::abs(formula.evaluate((k + 1) / 1000.0) - formula.evaluate(k / 1000.0)));
+    for (std::size_t k = 1; k < times.size(); ++k)
+      most = std::max(most, std::abs(factors[k] - factors[k - 1]) / (times[k] - times[k - 1]));
+    return std::abs(share) * most;
   }
 
   /// The largest absolute value; for a formula, at 1001 equidistant times from 0 to `end`.

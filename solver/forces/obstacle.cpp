@@ -43,6 +43,10 @@ ObstacleShape shape_of(const Obstacle& given, const std::filesystem::path& file)
 
 std::optional<BrokenRule> Obstacle::broken_rule() const {
   if (auto broken = broken_rule_of_name(label)) return broken;
+  if (curve != LoadCurve{} && displacement == Vector{}) {
+    return BrokenRule{"displacement",
+                      "is needed with times, factors or formula, which are its curve; a move has its own"};
+  }
   const std::string_view word = words_of(shape)[static_cast<std::size_t>(shape)];
   const bool is_plane = shape == Shape::plane, is_file = shape == Shape::surface;
   const bool has_sizes = shape == Shape::box || shape == Shape::ellipsoid;
@@ -88,9 +92,14 @@ void Obstacle::resolve(ForceResolver& resolver) const {
                     "allowed: a set with nodes that may move",
                     resolver.file, name, label, set));
   }
-  const Vector start = sum({}, curve.at(0.0, 0.0), displacement);
-  auto contact = make_moving_contact(std::move(touching), *this, shape_of(*this, resolver.file),
-                                     {resolver.number_of(curve), resolver.add_moves()}, start);
+  ObstaclePath path{{{resolver.number_of(curve), displacement}}, resolver.add_moves(), {}};
+  for (const ObstacleMove& move : moves)
+    path.legs.push_back({resolver.number_of(move.curve), move.displacement});
+  std::vector<double> factors;
+  for (const LoadCurve& each : resolver.curves) factors.push_back(each.at(0.0, 0.0));
+  path.start = path.at(factors);
+  auto contact =
+      make_moving_contact(std::move(touching), *this, shape_of(*this, resolver.file), std::move(path));
   const auto depth_of = [&](const TouchingNode& one) { return contact->depth_at_start(one); };
   const TouchingNode deepest = *std::ranges::max_element(contact->touching(), {}, depth_of);
   if (const double depth = depth_of(deepest); depth > scale.rounding()) {

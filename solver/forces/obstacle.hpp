@@ -7,8 +7,22 @@
 
 namespace sandglass {
 
-/// A rigid obstacle that keeps boundary nodes out of itself, and moves along a straight line. The pressure of
-/// a penalty acts on the undeformed area of the boundary, at its nodes.
+/// A motion of an obstacle along a straight line.
+struct ObstacleMove {
+  static constexpr std::string_view name = "move";
+
+  Vector displacement{};  ///< at the factor one, m
+  LoadCurve curve = {};
+
+  static constexpr auto parameters() {
+    using M = ObstacleMove;
+    return std::tuple{Parameter{&M::displacement, "displacement", "m", Range::any(), "how far it moves"},
+                      Parameter{&M::curve, "curve", "-", Range::any(), "as of the obstacle", false}};
+  }
+};
+
+/// A rigid obstacle that keeps boundary nodes out of itself, and moves by the sum of its moves. The pressure
+/// of a penalty acts on the undeformed area of the boundary, at its nodes.
 struct Obstacle {
   static constexpr std::string_view name = "obstacle";
   static constexpr std::string_view summary = "a rigid obstacle that the body touches";
@@ -40,8 +54,9 @@ struct Obstacle {
   bool inside = false;    ///< whether the body is inside of it, as in a cavity
   Vector displacement{};  ///< at the factor one, m
   LoadCurve curve = {};
-  double friction = 0.0;  ///< Coulomb's coefficient
-  double penalty = 30.0;  ///< see parameters
+  std::vector<ObstacleMove> moves = {};  ///< in addition
+  double friction = 0.0;                 ///< Coulomb's coefficient
+  double penalty = 30.0;                 ///< see parameters
   Method method = Method::kinematic;
 
   static constexpr auto parameters() {
@@ -68,7 +83,13 @@ struct Obstacle {
         Parameter{&O::inside, "inside", "-", Range::any(), "whether the body is inside of it, as in a cavity",
                   false},
         Parameter{&O::displacement, "displacement", "m", Range::any(), "how far it moves", false},
-        Parameter{&O::curve, "curve", "-", Range::any(), "factor of its displacement over time", false},
+        Parameter{&O::curve, "curve", "-", Range::any(),
+                  "they multiply the displacement, in place of the loading curve of the case", false},
+        Parameter{
+            &O::moves, "move", "-", Range::any(),
+            "[[obstacle.move]], several times: further displacements that add to it, each with displacement "
+            "and a curve of its own: times and factors, or formula",
+            false},
         Parameter{&O::friction, "friction", "-", Range::at_least(0.0), "Coulomb's coefficient", false},
         Parameter{
             &O::penalty, "penalty", "-", Range::positive(),

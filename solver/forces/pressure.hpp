@@ -21,7 +21,8 @@ struct Pressure {
     using P = Pressure;
     return std::tuple{Parameter{&P::set, "set", "-", Range::any(), "node set with the loaded faces"},
                       Parameter{&P::value, "value", "Pa", Range::any(), "pressure"},
-                      Parameter{&P::curve, "curve", "-", Range::any(), "factor over time", false}};
+                      Parameter{&P::curve, "curve", "-", Range::any(),
+                                "they multiply the load, in place of the loading curve of the case", false}};
   }
 
   void resolve(ForceResolver& resolver) const;

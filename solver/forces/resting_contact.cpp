@@ -7,9 +7,10 @@ namespace sandglass {
 
 namespace {
 
-/// It keeps a row for each node: how it would touch if that were not fixed, and contrary; its depth and the
-/// depth of its constant force, m; how it touches. With friction also two rows of the last load level: from
-/// where the node slips, in the frame of the obstacle and relative to the undeformed body, m; the extension
+/// It keeps two rows for each node: how it would touch if that were not fixed, and contrary; its depth and
+/// the depth of its constant force, m; how it touches; and its place at the last load level, in the frame of
+/// the obstacle, m, and whether that is known. With friction also two rows of that level: from where the node
+/// slips, in the frame of the obstacle and relative to the undeformed body, m; the extension
 /// of its spring along the obstacle, m.
 class RestingContact final : public ObstacleContact {
  public:
@@ -17,19 +18,18 @@ class RestingContact final : public ObstacleContact {
 
   std::shared_ptr<const BodyForce> at_rest() const override { return nullptr; }
   std::shared_ptr<const BodyForce> in_motion() const override {
-    return make_moving_contact(nodes_, obstacle_, shape_, curves_, start_);
+    return make_moving_contact(nodes_, obstacle_, shape_, path_);
   }
   bool remembers_path() const override { return rubs(); }
 
   void add_contact(Factors factors, NodalRows u, Row<double>* rows,
                    AtNodes<Row<double>> forces) const override {
     ContactMemory memory(rows);
-    const Vector moved = displacement(factors);
+    const Vector moved = path_.at(factors);
     memory.clear_forces();
     memory.moves = {{moved[0], moved[1], moved[2], 0.0}};
     memory.sums[2] = 0.0;
     const bool fixed = is_fixed(rows);
-    const double deepest = deep * half_thickness();
     for_each_gap(moved, u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const auto& [node, X, stiffness] = nodes_[k];
       Row<double>* of_node = memory.others + by_node() * k;
@@ -41,7 +41,6 @@ class RestingContact final : public ObstacleContact {
       if (touches != free) ++memory.sums[2];
       of_node[0] = {{touches != free ? 1.0 + free : 0.0, depth, constant, touches}};
       if (touches == not_at_all) return;
-      if (depth > deepest) memory.note_passed(node);
       memory.pushes[3] += 0.5 * stiffness * depth * (depth + 2.0 * constant);
       memory.moves[3] = std::max(memory.moves[3], depth);
       Vector force = sum({}, stiffness * (depth + constant), gap.normal);
@@ -56,7 +55,7 @@ class RestingContact final : public ObstacleContact {
   /// With friction that of a slip under constant pressure.
   void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,
                              double& sum) const override {
-    for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+    for_each_gap(path_.at(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const Row<double>* of_node = memory + ContactMemory::own + by_node() * k;
       const double constant = of_node[0][2], depth = std::max(constant - gap.distance, 0.0);
       sum += 0.5 * nodes_[k].stiffness * (depth * depth - constant * constant);
@@ -67,11 +66,15 @@ class RestingContact final : public ObstacleContact {
   }
 
   void end_level(Factors factors, NodalRows u, Row<double>* rows) const override {
-    if (!rubs()) return;
     ContactMemory memory(rows);
-    for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+    for_each_gap(path_.at(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       Row<double>* of_node = memory.others + by_node() * k;
-      Row<double>&from = of_node[1], &stretch = of_node[2];
+      Row<double>& last = of_node[1];
+      const Vector way = last[3] == 0.0 ? Vector{} : difference(x, {last[0], last[1], last[2]});
+      if (passes(x, gap, way)) memory.note_passed(nodes_[k].node);
+      last = {{x[0], x[1], x[2], 1.0}};
+      if (!rubs()) return;
+      Row<double>&from = of_node[2], &stretch = of_node[3];
       Vector along{};
       if (of_node[0][3] != 0.0) {
         along = extension(k, x, gap, of_node);
@@ -115,7 +118,7 @@ class RestingContact final : public ObstacleContact {
 
   void slide(Factors factors, NodalRows before, const Row<double>* memory,
              AtNodes<Row<double>> u) const override {
-    const Vector moved = displacement(factors);
+    const Vector moved = path_.at(factors);
     for_each_gap(moved, before, [&](std::size_t k, const Vector& from, const Gap& gap) {
       if (!touches(k, gap, memory)) return;
       const auto& [node, X, stiffness] = nodes_[k];
@@ -129,7 +132,7 @@ class RestingContact final : public ObstacleContact {
 
   void add_springs(Factors factors, NodalRows u, const Row<double>* memory,
                    std::vector<Spring>& springs) const override {
-    for_each_gap(displacement(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
+    for_each_gap(path_.at(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       if (!touches(k, gap, memory)) return;
       const double stiffness = nodes_[k].stiffness;
       Spring spring{{nodes_[k].node}, {1.0f}, 1, root_of(stiffness, gap.normal)};
@@ -149,7 +152,7 @@ class RestingContact final : public ObstacleContact {
     const Rows<double> undeformed(nodes_.size());
     std::vector<int> places;
     for (const TouchingNode& one : nodes_) places.resize(std::max(places.size(), at(one.node) + 1), 0);
-    for_each_gap(start_, NodalRows(undeformed.data(), places),
+    for_each_gap(path_.start, NodalRows(undeformed.data(), places),
                  [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
                    if (gap.distance > 0.0) return;
                    hold_point({{nodes_[k].node, 1.0}}, gap.normal, rubs(), holds);
@@ -157,7 +160,7 @@ class RestingContact final : public ObstacleContact {
   }
 
  private:
-  std::size_t by_node() const { return rubs() ? 3 : 1; }
+  std::size_t by_node() const { return rubs() ? 4 : 2; }
 
   /// Whether a node is linearized as touching: unless it is fixed, also where body and obstacle just fit.
   bool touches(std::size_t k, const Gap& gap, const Row<double>* memory) const {
@@ -168,16 +171,16 @@ class RestingContact final : public ObstacleContact {
   static bool is_fixed(const Row<double>* memory) { return memory[2][3] != 0.0; }
 
   std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
-    return make_resting_contact(std::move(nodes), obstacle_, shape_, curves_, start_);
+    return make_resting_contact(std::move(nodes), obstacle_, shape_, path_);
   }
 
   /// Where a node of the undeformed body was in the frame of the obstacle, m.
-  Vector undeformed(std::size_t k) const { return difference(nodes_[k].X, start_); }
+  Vector undeformed(std::size_t k) const { return difference(nodes_[k].X, path_.start); }
 
   /// The extension (m) along the surface of the spring of a node, before it slips: its way since the last
   /// load level, or since it met the surface if it was outside.
   Vector extension(std::size_t k, const Vector& x, const Gap& gap, const Row<double>* of_node) const {
-    const Row<double>& from = of_node[1];
+    const Row<double>& from = of_node[2];
     const Vector place = sum(undeformed(k), 1.0, {from[0], from[1], from[2]});
     return way_along(difference(x, place), gap.normal, gap.distance, gap_at(place).distance);
   }
@@ -192,10 +195,10 @@ class RestingContact final : public ObstacleContact {
 
 std::shared_ptr<ObstacleContact> make_resting_contact(std::vector<TouchingNode> nodes,
                                                       const Obstacle& obstacle, const ObstacleShape& shape,
-                                                      const ObstacleCurves& curves, const Vector& start) {
+                                                      ObstaclePath path) {
   const bool rubs = obstacle.friction > 0.0;
   return std::make_shared<RestingContact>(
-      std::move(nodes), obstacle, shape, curves, start,
+      std::move(nodes), obstacle, shape, std::move(path),
       ForceTraits{Obstacle::name, false, rubs, rubs ? path_of_friction : ""});
 }
 

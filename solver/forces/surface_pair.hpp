@@ -46,7 +46,7 @@ class SurfacePair : public ContactForce, public std::enable_shared_from_this<Sur
   std::size_t memory() const final { return memory_; }
   Touch touch(const Row<double>* memory) const final { return touch_of(contact_.label, memory); }
   double half_thickness() const final { return given_.reach; }
-  double travel() const final { return 0.0; }
+  double travel(Factors /*changes*/) const final { return 0.0; }
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override;
   std::shared_ptr<const BodyForce> at_rest() const override { return make_resting_pair(shared_from_this()); }
 

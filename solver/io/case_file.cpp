@@ -12,6 +12,7 @@
 #include "io/foreign_file.hpp"
 #include "io/mesh_file.hpp"
 #include "io/table_reader.hpp"
+#include "mesh/interpolation.hpp"
 
 namespace sandglass {
 
@@ -169,6 +170,24 @@ MeshWithSets read_mesh_of(const Case& description, const MeshFile& file) {
   }
 }
 
+/// Throws InputError for bodies that overlap, unless a [[tie]] joins bodies that do.
+void require_apart(const Case& description, const Mesh& mesh) {
+  if (!description.ties.empty()) return;
+  std::vector<bool> on_boundary = nodes_of(boundary_faces(mesh.cells), mesh.points.size());
+  std::vector<int> nodes;
+  for (std::size_t n = 0; n < on_boundary.size(); ++n)
+    if (on_boundary[n]) nodes.push_back(static_cast<int>(n));
+  constexpr double well_within = 0.3;
+  const auto found =
+      overlaps(mesh.points, mesh.cells, points_within(mesh.points, mesh.cells, nodes, well_within));
+  if (found.empty()) return;
+  const Vector& X = found.front().first.X;
+  throw InputError(fmt::format(
+      "{}: mesh.bodies: the point ({:.6g}, {:.6g}, {:.6g}) m is in two bodies; allowed: bodies that do not "
+      "intersect, or a [[tie]] that joins them",
+      description.file.string(), X[0], X[1], X[2]));
+}
+
 /// `read_mesh(reader, case)` sets its mesh.
 template <class ReadMesh>
 Case read_case(const CaseTables& tables, const std::filesystem::path& path, const ReadMesh& read_mesh) {
@@ -242,6 +261,7 @@ CaseOnMesh with_mesh(Case description) {
   }
   if (const auto* bodies = std::get_if<std::vector<PlacedBody>>(&description.mesh)) {
     auto [mesh, sets, element_sets] = build(*bodies);
+    require_apart(description, mesh);
     return {std::move(description), std::move(mesh), std::move(sets), std::move(element_sets)};
   }
   Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));

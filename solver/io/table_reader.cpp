@@ -137,6 +137,8 @@ template std::array<int, 3> TableReader::convert<std::array<int, 3>>(const toml:
 template std::vector<double> TableReader::convert<std::vector<double>>(const toml::node&,
                                                                        const std::string&) const;
 template std::vector<int> TableReader::convert<std::vector<int>>(const toml::node&, const std::string&) const;
+template std::vector<std::string> TableReader::convert<std::vector<std::string>>(const toml::node&,
+                                                                                 const std::string&) const;
 
 bool TableReader::holds_number(const std::string& key) {
   const toml::node* node = find(key);
@@ -172,7 +174,8 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   std::vector<TableReader> readers;
   const toml::node* node = find(key);
   if (node == nullptr) return readers;
-  if (!node->is_array_of_tables()) fail_type(key, *node, fmt::format("an array of tables, [[{}]]", key));
+  if (!node->is_array_of_tables())
+    fail_type(key, *node, fmt::format("an array of tables, [[{}]]", name_of(key)));
   for (const auto& entry : *node->as_array()) readers.emplace_back(*entry.as_table(), file_, name_of(key));
   return readers;
 }

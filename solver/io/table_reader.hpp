@@ -28,7 +28,7 @@ class TableReader {
   const std::filesystem::path& file() const { return file_; }
 
   /// The value of a key; none if the key is absent. T: double, int, bool, std::string, a std::array or
-  /// std::vector of double or int.
+  /// std::vector of double or int, a std::vector of std::string.
   template <class T>
   std::optional<T> optional(const std::string& key) {
     const toml::node* node = find(key);
@@ -87,7 +87,8 @@ class TableReader {
   }
 
   /// Reads all declared parameters of an aggregate, each within its range, and checks the aggregate's rules
-  /// between them. The keys of a parameter that is itself an aggregate are in this table.
+  /// between them. The keys of a parameter that is itself an aggregate are in this table; a list of
+  /// aggregates is an array of tables.
   template <class Aggregate>
   void parameters(Aggregate& aggregate) {
     std::apply([&](const auto&... parameter) { (read(aggregate, parameter), ...); }, Aggregate::parameters());
@@ -131,6 +132,11 @@ class TableReader {
     Value& value = aggregate.*(parameter.member);
     if constexpr (requires { Value::parameters(); }) {
       parameters(value);
+    } else if constexpr (requires { Value::value_type::parameters(); }) {
+      for (TableReader& table : tables(key)) {
+        table.parameters(value.emplace_back());
+        table.finish();
+      }
     } else if constexpr (std::is_enum_v<Value>) {
       if (!parameter.required && !optional<std::string>(key)) return;
       const auto words = words_of(value);

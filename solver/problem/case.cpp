@@ -103,6 +103,12 @@ constexpr bool is_numerical(std::string_view parameter) {
   }
 }
 
+template <class Force>
+constexpr bool is_only_in_motion(std::string_view parameter) {
+  if constexpr (requires { Force::only_in_motion; }) return Force::only_in_motion == parameter;
+  return false;
+}
+
 /// "name(value:value)" with the parameters of a force that affect a static answer, or with those that affect
 /// only motions; then its curve, and words other than the default.
 template <class Force>
@@ -111,9 +117,11 @@ std::string described(const Force& force, bool in_motion) {
   std::string others;
   const auto add = [&]<class Value>(const Parameter<Force, Value>& parameter) {
     const Value& value = force.*(parameter.member);
-    if ((parameter.name == Force::only_in_motion) != in_motion || is_numerical<Force>(parameter.name)) return;
+    if (is_only_in_motion<Force>(parameter.name) != in_motion || is_numerical<Force>(parameter.name)) return;
     if constexpr (std::is_same_v<Value, LoadCurve>) {
       others += described(value);
+    } else if constexpr (requires { Value::value_type::parameters(); }) {
+      for (const auto& each : value) others += described(each, in_motion);
     } else if constexpr (std::is_enum_v<Value>) {
       if (value != Force{}.*(parameter.member))
         others += fmt::format("{} {}", parameter.name, text_of(value));
@@ -188,7 +196,10 @@ std::string numerical_settings(const Case& description) {
       fmt::format("cycles {} tolerance {} levels {} at most {}", cycles, tolerance, levels, max_steps);
   description.forces.for_each([&]<class Force>(const Force& force) {
     const auto add = [&]<class Value>(const Parameter<Force, Value>& parameter) {
-      if constexpr (!std::is_same_v<Value, LoadCurve>) {
+      constexpr bool is_plain = !std::is_same_v<Value, LoadCurve> && !requires {
+        Value::value_type::parameters();
+      };
+      if constexpr (is_plain) {
         if (is_numerical<Force>(parameter.name))
           text += fmt::format(" {} {}", parameter.name, text_of(force.*(parameter.member)));
       }

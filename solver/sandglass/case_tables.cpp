@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "assembly/method_entry.hpp"
 #include "io/case_file.hpp"
 #include "io/case_mesh.hpp"
@@ -25,6 +28,8 @@ CaseKey typed(const Value& standard) {
     return {.type = "text"};
   } else if constexpr (std::is_arithmetic_v<Value>) {
     return {.type = std::is_integral_v<Value> ? "integer" : "number", .standard = fmt::to_string(standard)};
+  } else if constexpr (requires { Value::value_type::parameters(); }) {
+    return {.type = "table", .count = 0};
   } else {
     CaseKey key = typed(typename Value::value_type{});
     key.standard = "";
@@ -41,7 +46,9 @@ std::vector<CaseKey> declared() {
   std::vector<CaseKey> keys;
   const auto add = [&]<class Value>(const Parameter<Aggregate, Value>& parameter) {
     if constexpr (requires { Value::parameters(); }) {
-      for (CaseKey& key : declared<Value>()) keys.push_back(std::move(key));
+      std::vector<CaseKey> own = declared<Value>();
+      own.front().meaning += fmt::format("; {}", parameter.meaning);
+      std::ranges::move(own, std::back_inserter(keys));
     } else {
       CaseKey key = typed(defaults.*(parameter.member));
       key.name = parameter.name;

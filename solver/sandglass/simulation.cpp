@@ -167,7 +167,8 @@ class Simulation<Real>::Parts {
     }
     const bool last = !(share < 1.0), due = leapfrog_.step() % scene().settings.dynamics.check_interval == 0;
     if (device_steps_.active() && (last || due)) device_steps_.bring(leapfrog_.body(), factor_, time());
-    return !(due || (last && !is_finite(body()))) || check();
+    const bool doubtful = last && (!is_finite(body()) || body().touch().passed >= 0);
+    return !(due || doubtful) || check();
   }
 
   /// False as in `take`.
@@ -182,6 +183,7 @@ class Simulation<Real>::Parts {
     }
     try {
       if (!healthy) require_healthy(leapfrog_.body(), leapfrog_.step());
+      require_not_passed(body().touch(), scene().mesh.points, fmt::format("step {}", leapfrog_.step()));
       if (adaption_.active() && adaption_schedule_.due()) {
         const bool rose = adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0;
         if (rose) leapfrog_.body().evaluate_forces();

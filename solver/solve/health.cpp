@@ -74,15 +74,15 @@ void require_healthy(const Body<Real>& body, long step) {
   require_healthy(jacobians, step);
 }
 
-void require_not_passed(const Touch& touch, const NodalField& points, long step) {
+void require_not_passed(const Touch& touch, const NodalField& points, const std::string& when) {
   if (touch.passed < 0) return;
   const Vector& X = points[at(touch.passed)];
   throw ComputationError(fmt::format(
-      "step {}: contact '{}': node {}, undeformed at ({:.6g}, {:.6g}, {:.6g}) m, went deeper than "
+      "{}: contact '{}': node {}, undeformed at ({:.6g}, {:.6g}, {:.6g}) m, went deeper than "
       "the contact can push back from, and may have passed through\n"
-      "remedy: press less or more slowly, take smaller steps (step_fraction), and by method = 'penalty' a "
-      "larger penalty",
-      step, touch.name, touch.passed, X[0], X[1], X[2]));
+      "remedy: press less or more slowly, take smaller steps (step_fraction, in static equilibrium levels), "
+      "and by a penalty a larger one",
+      when, touch.name, touch.passed, X[0], X[1], X[2]));
 }
 
 void require_static_contact(const Scene& scene) {

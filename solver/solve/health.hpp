@@ -25,8 +25,8 @@ void require_healthy(std::span<const double> jacobians, long step);
 template <class Real>
 void require_healthy(const Body<Real>& body, long step);
 
-/// Throws ComputationError if a node may have passed through a surface that it touched.
-void require_not_passed(const Touch& touch, const NodalField& points, long step);
+/// Throws ComputationError, which says when, if a node may have passed through a surface.
+void require_not_passed(const Touch& touch, const NodalField& points, const std::string& when);
 
 /// Throws InputError if a contact is supported in motions only, or if friction would follow a curve in levels
 /// that the user has not chosen.

@@ -24,6 +24,13 @@ inline double span(const NodalField& points) {
   return 2.0 * radius;
 }
 
+/// The largest changes of the factors of curves per load.
+inline std::vector<double> largest_changes(const Scene& scene) {
+  std::vector<double> changes;
+  for (const LoadCurve& curve : scene.curves) changes.push_back(curve.steepest());
+  return changes;
+}
+
 /// A load factor so small that no element inverts wherever the load acts. Driven nodes and obstacles move by
 /// at most a hundredth of the smallest element's size h. Under the sum F of the forces, a cantilever as long
 /// as the mesh, l, and as thick as that element, with the smallest shear modulus as E, would rotate by F l^2
@@ -45,8 +52,9 @@ inline double first_load(const Model& model) {
   for (const LoadCurve& curve : scene.curves) share = std::max(share, std::abs(curve.share));
   const double turn = share * F * l * l * 6.0 / (mu * h * h * h * h);
   double fastest = fastest_imposed(scene);
+  const std::vector<double> changes = largest_changes(scene);
   for (const ContactForce* contact : contacts_of(scene.forces))
-    fastest = std::max(fastest, share * contact->travel());
+    fastest = std::max(fastest, contact->travel(changes));
   return std::min({1.0, 0.01 * h / fastest, 0.01 / turn});
 }
 
@@ -281,8 +289,9 @@ class LoadLevels {
     for (const double angle : scene.angles) largest = std::max(largest, std::abs(angle));
     constexpr double eighth = std::numbers::pi / 4.0;
     double longest = largest > eighth ? eighth / largest : 1.0;
+    const std::vector<double> changes = largest_changes(scene);
     for (const ContactForce* contact : contacts_of(scene.forces))
-      longest = std::min(longest, 0.5 * contact->half_thickness() / contact->travel());
+      longest = std::min(longest, 0.5 * contact->half_thickness() / contact->travel(changes));
     return longest;
   }
 

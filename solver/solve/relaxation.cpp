@@ -47,6 +47,7 @@ class Search {
     if (from != nullptr) {
       keep(CheckpointReader(*from));
     } else {
+      body().end_level();
       observer_.frame(frame_of(body(), 0.0, no_velocity_));
       report();
     }
@@ -275,6 +276,8 @@ class Search {
     result_.converged = load_levels_.full() && !result_.stagnated;
     ended_ = load_levels_.full() || equilibrium_.evaluations() >= most_evaluations_;
     body().end_level();
+    require_not_passed(body().touch(), model_.scene().mesh.points,
+                       fmt::format("load {:.6g}", load_levels_.load()));
     add_work();
     report();
     if (ended_) return;

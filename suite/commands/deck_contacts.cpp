@@ -51,15 +51,21 @@ class ContactWriter {
 
   void write(const ObstacleContact& contact) {
     Obstacle given = contact.given();
-    const bool is_of_case = given.curve == LoadCurve{};
+    const auto follows_case = [](const auto& moving) { return moving.curve == LoadCurve{}; };
+    const bool is_of_case = follows_case(given) && std::ranges::all_of(given.moves, follows_case);
+    const auto moved_at = [&](double at) {
+      Vector moved = sum({}, given.curve.at(at, at), given.displacement);
+      for (const ObstacleMove& move : given.moves)
+        moved = sum(moved, move.curve.at(at, at), move.displacement);
+      return moved;
+    };
     if (!is_of_case && !scene_.settings.quasi_static)
       refuse(Obstacle::name, given.label, "follows a curve of its own in a dynamic case");
     if (!is_of_case && given.friction > 0.0)
       refuse(Obstacle::name, given.label, "follows a curve of its own, on which friction depends");
-    const Vector start = sum({}, given.curve.at(0.0, 0.0), given.displacement);
+    const Vector start = moved_at(0.0), end = moved_at(1.0);
     given.point = sum(given.point, 1.0, start);
     given.end = sum(given.end, 1.0, start);
-    const Vector end = sum({}, given.curve.at(1.0, 1.0), given.displacement);
     given.displacement = difference(end, start);
     const std::string group = fmt::format("/problem/obstacles/{}", obstacles_++);
     const auto faces = faces_of(given.set);

@@ -15,7 +15,8 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-/// Keeps the displacements at some times and the last energies; asks another observer whether to continue.
+/// Keeps the displacements at some times and the last energies, and the reactions at all checks; asks another
+/// observer whether to continue.
 class Sampler final : public Observer {
  public:
   Sampler(std::vector<double> times, Observer& other) : times_(std::move(times)), other_(other) {}
@@ -24,7 +25,10 @@ class Sampler final : public Observer {
     return u.size() < times_.size() ? times_[u.size()] : Observer::next_sample();
   }
   void sample(const NodalField& now) override { u.push_back(now); }
-  void history(const HistoryRow& row) override { energies = {row.strain, row.hourglass}; }
+  void history(const HistoryRow& row) override {
+    energies = {row.strain, row.hourglass};
+    checks.push_back({row.time, row.reactions});
+  }
   void at_load(double factor) override { other_.at_load(factor); }
   bool proceed(long step, double share, double residual) override {
     return other_.proceed(step, share, residual);
@@ -32,6 +36,7 @@ class Sampler final : public Observer {
 
   Displacements u;
   StrainEnergies energies;
+  std::vector<ReactionsAt> checks;
 
  private:
   std::vector<double> times_;
@@ -43,13 +48,16 @@ Answer moving_answer(const Model& model, Observer& observer) {
   const Motion motion = integrate(model, sampler);
   return {.u = std::move(sampler.u),
           .energies = sampler.energies,
+          .checks = std::move(sampler.checks),
           .steps = motion.steps,
           .seconds = motion.seconds};
 }
 
 Answer resting_answer(const Model& model, Observer& observer) {
-  Relaxation relaxation = relax(model, observer);
+  Sampler sampler({}, observer);
+  Relaxation relaxation = relax(model, sampler);
   Answer answer{.energies = relaxation.energies,
+                .checks = std::move(sampler.checks),
                 .steps = relaxation.steps,
                 .residual = relaxation.residual,
                 .seconds = relaxation.seconds};

@@ -6,14 +6,16 @@
 
 #include "comparison/accuracy.hpp"
 #include "comparison/finding.hpp"
+#include "comparison/published.hpp"
 #include "problem/observer.hpp"
 
 namespace sandglass {
 
 /// The outcome of a static or dynamic computation.
 struct Answer {
-  Displacements u;                      ///< m, at the answer's times; empty if the computation broke down
-  StrainEnergies energies;              ///< J, at the last of them
+  Displacements u;          ///< m, at the answer's times; empty if the computation broke down
+  StrainEnergies energies;  ///< J, at the last of them
+  std::vector<ReactionsAt> checks = {};
   std::optional<Finding> failure = {};  ///< how it broke down, or that it is not in equilibrium
   bool refused = false;                 ///< the method does not support this case
   std::string status = "ok";            ///< or the reason why not

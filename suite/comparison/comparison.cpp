@@ -2,11 +2,14 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "base/names.hpp"
 #include "comparison/published.hpp"
+#include "forces/contact_force.hpp"
 #include "io/case_file.hpp"
 #include "io/case_variants.hpp"
 #include "io/table_reader.hpp"
@@ -40,16 +43,30 @@ ProgramValues read_program(TableReader table) {
 
 PublishedValue read_published(TableReader table, bool measured) {
   PublishedValue published;
-  published.set = table.required<std::string>("set");
+  if (const auto obstacles = table.optional<std::vector<std::string>>("obstacles")) {
+    published.obstacles = *obstacles;
+    published.set = fmt::to_string(fmt::join(*obstacles, " + "));
+    published.over = table.optional<double>("over", Range::at_least(0.0)).value_or(0.0);
+    if (table.optional<std::string>("set"))
+      table.fail("obstacles", "was given with set; allowed: a force of obstacles, or a motion of a set");
+  } else {
+    published.set = table.required<std::string>("set");
+  }
   published.component = table.required_choice("component", directions());
   published.value = table.required<double>("value", Range::any());
   if (published.value == 0.0)
     table.fail("value", "= 0 must not be zero: results are reported as shares of it");
   published.source = table.required<std::string>("source");
   published.at = table.optional<Vector>("at", Range::any());
+  if (!published.obstacles.empty() && (published.at || published.component.size() > 1)) {
+    table.fail(
+        "obstacles",
+        "add up to a force, which has a component x, y or z and no `at`; leave out what is of motions");
+  }
   if (published.at && published.component.size() > 1)
     table.fail("at", fmt::format("is for displacements; component is '{}'", published.component));
   if (measured) {
+    if (!published.obstacles.empty()) table.fail("obstacles", "is for [[published]]; allowed here: set");
     published.scatter = table.required<double>("scatter", Range::at_least(0.0));
     if (table.optional<std::string>("of")) {
       const auto words = words_of(Feature{});
@@ -134,9 +151,24 @@ Comparison read_comparison(const CaseSettings& settings) {
 Comparison read_comparison(const Scene& scene) {
   Comparison comparison = read_comparison(scene.settings);
   const auto require_set = [&](const char* key, const std::string& set) { node_set(scene, key, set); };
+  std::vector<std::string> obstacles;
+  for (const Movable& one : movable_of(scene.forces)) obstacles.emplace_back(one.name);
   if (comparison.profile) require_set("profile.set", comparison.profile->set);
-  for (const auto& [set, component, value, source, programs, scatter, at, of] : comparison.published) {
+  for (const auto& [set, component, value, source, programs, scatter, at, of, of_obstacles, over] :
+       comparison.published) {
     const std::string table = scatter ? "measured" : "published";
+    for (const std::string& name : of_obstacles) {
+      if (std::ranges::find(obstacles, name) != obstacles.end()) continue;
+      throw InputError(fmt::format("{}: {}.obstacles: '{}' is not an obstacle of the case; {}",
+                                   scene.settings.file.string(), table, name, suggestion(name, obstacles)));
+    }
+    if (over > (scene.settings.quasi_static ? 0.0 : scene.settings.dynamics.duration)) {
+      throw InputError(
+          fmt::format("{}: {}.over = {} s is more than the duration; allowed: in a dynamic case, "
+                      "a time at its end",
+                      scene.settings.file.string(), table, over));
+    }
+    if (!of_obstacles.empty()) continue;
     require_set((table + ".set").c_str(), set);
     if (of != Feature::end && scene.settings.quasi_static) {
       throw InputError(fmt::format("{}: measured.of = '{}' is for dynamic cases; the answer is quasi-static",
@@ -156,7 +188,8 @@ std::string describe_comparison_keys() {
 [profile] set = NAME, order = "x" | "y" | "z" | "around-x" | "around-y" | "around-z"
 [comparison] kappas = [numbers], golden = "FILE.h5", truth = "FILE.h5"
 [[published]] set = NAME, component = "x", ... or "around-x", ..., value in m or rad: mean displacement or
-  rotation of the set, source: a text
+  rotation of the set, source: a text; or instead of set, obstacles = [NAMES], value in N: the sum of their forces
+  on the body at the end; over = s (default: 0): its mean over this time at the end, of all checks (check_interval)
 [[measured]] the same, with scatter: of its repetitions, at = [x, y, z]: instead of the mean the displacement of
   a point that moves with the set (also of [[published]]), of: "end", "peak" or "period" (s) of a motion
 [[published.programs]] program: its name and element, values = [numbers] of the same motion, elements = [number

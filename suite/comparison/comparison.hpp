@@ -27,16 +27,18 @@ constexpr std::array<std::string_view, 3> words_of(Feature /*type*/) {
   return {"end", "peak", "period"};
 }
 
-/// A published motion of a node set, computed by other programs or measured.
+/// A published motion of a node set, computed by other programs or measured, or a known force of obstacles.
 struct PublishedValue {
-  std::string set;
+  std::string set;        ///< of a force, the names of the obstacles
   std::string component;  ///< "x", "y", "z": mean displacement; "around-x", ...: mean rotation
-  double value = 0.0;     ///< m or rad, of a period s; not zero
+  double value = 0.0;     ///< m or rad, of a period s, of a force N; not zero
   std::string source;     ///< where it was published
   std::vector<ProgramValues> programs = {};
   std::optional<double> scatter = {};  ///< of a measurement, in the unit of the value; else none
   std::optional<Vector> at = {};       ///< instead of the mean: a point that moves with the set, m
   Feature of = Feature::end;
+  std::vector<std::string> obstacles = {};  ///< whose forces on the body add up to the value; empty: a motion
+  double over = 0.0;  ///< s, at the end, over which a force is the mean of all checks; 0: at the last one
 };
 
 /// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.

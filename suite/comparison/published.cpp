@@ -115,6 +115,10 @@ std::vector<PublishedResult> published_results(const Scene& scene, const std::ve
   std::vector<PublishedResult> results;
   for (const auto& published : values) {
     PublishedResult result{published, {}, {}, {}};
+    if (!published.obstacles.empty()) {  // references are displacements
+      results.push_back(std::move(result));
+      continue;
+    }
     if (truth) result.truth = computed_value(scene, *truth, published);
     if (golden) result.golden = computed_value(scene, *golden, published);
     results.push_back(std::move(result));
@@ -122,8 +126,30 @@ std::vector<PublishedResult> published_results(const Scene& scene, const std::ve
   return results;
 }
 
-void fill_computed(const Scene& scene, const Displacements& u, std::vector<PublishedResult>& results) {
-  for (auto& result : results) result.computed = computed_value(scene, u, result.published);
+std::optional<double> force_of(const std::vector<ReactionsAt>& checks, const PublishedValue& published) {
+  if (checks.empty()) return std::nullopt;
+  const auto axis = static_cast<std::size_t>(published.component[0] - 'x');
+  const auto force_at = [&](const ReactionsAt& check) {
+    double sum = 0.0;
+    for (const std::string& obstacle : published.obstacles) sum += check.reactions.at(obstacle)[axis];
+    return sum;
+  };
+  const double start = checks.back().time - published.over;
+  double impulse = 0.0, time = 0.0;
+  for (std::size_t k = 1; k < checks.size(); ++k) {
+    if (checks[k - 1].time < start) continue;
+    impulse += (checks[k].time - checks[k - 1].time) * force_at(checks[k]);
+    time += checks[k].time - checks[k - 1].time;
+  }
+  return time > 0.0 ? impulse / time : force_at(checks.back());
+}
+
+void fill_computed(const Scene& scene, const Displacements& u, const std::vector<ReactionsAt>& checks,
+                   std::vector<PublishedResult>& results) {
+  for (auto& [published, computed, truth, golden] : results) {
+    computed =
+        published.obstacles.empty() ? computed_value(scene, u, published) : force_of(checks, published);
+  }
 }
 
 std::optional<double> largest_relative_error(const std::vector<PublishedResult>& results, bool measured,

@@ -6,6 +6,7 @@
 #include "comparison/accuracy.hpp"
 #include "comparison/comparison.hpp"
 #include "problem/model.hpp"
+#include "problem/observer.hpp"
 
 namespace sandglass {
 
@@ -18,7 +19,7 @@ std::optional<std::vector<double>> point_weights(const NodalField& points, const
 /// A published motion and the computed one.
 struct PublishedResult {
   PublishedValue published;
-  std::optional<double> computed;  ///< m or rad; none if the computation failed
+  std::optional<double> computed;  ///< m, rad, s or N; none if the computation failed
   std::optional<double> truth;     ///< m or rad, of the stored truth; none without one
   std::optional<double> golden;    ///< of the stored golden; none without one
 
@@ -46,8 +47,19 @@ std::vector<PublishedResult> published_results(const Scene& scene, const std::ve
                                                const std::optional<Displacements>& truth,
                                                const std::optional<Displacements>& golden);
 
-/// Fills in the values computed from displacements u (m) of the scene.
-void fill_computed(const Scene& scene, const Displacements& u, std::vector<PublishedResult>& results);
+/// The reactions (N) of an answer at a check; see HistoryRow.
+struct ReactionsAt {
+  double time;  ///< s; in static equilibrium, as of a HistoryRow
+  Reactions reactions;
+};
+
+/// The force (N) for which a value is published, from the reactions at all checks: the sum over its
+/// obstacles, at the last check or its mean in time; none without a check.
+std::optional<double> force_of(const std::vector<ReactionsAt>& checks, const PublishedValue& published);
+
+/// Fills in the values computed from displacements u (m) of the scene and from the reactions at its checks.
+void fill_computed(const Scene& scene, const Displacements& u, const std::vector<ReactionsAt>& checks,
+                   std::vector<PublishedResult>& results);
 
 /// The largest |computed / published - 1| of published or measured values, and either of periods or of the
 /// others; none if there is nothing to compare.

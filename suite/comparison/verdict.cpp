@@ -98,10 +98,12 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
       .published =
           published_results(scene, references.comparison.published, references.truth, references.golden)};
   StrainEnergies energies;
+  std::vector<ReactionsAt> checks;
   try {
     Answer answer = fill_answer(scene, choice, verdict);
     u = std::move(answer.u);
     energies = answer.energies;
+    checks = std::move(answer.checks);
   } catch (const ComputationError& error) {
     const std::string_view text(error.what());
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
@@ -117,7 +119,7 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
     verdict.finding =
         verdict.ok() ? judge(*verdict.symptoms, golden_to_truth(scene, references)) : Finding::no_equilibrium;
   }
-  fill_computed(scene, u, verdict.published);
+  fill_computed(scene, u, checks, verdict.published);
   return verdict;
 }
 

@@ -87,7 +87,8 @@ Json to_record(const PublishedResult& result) {
           {"computed", or_null(result.computed)},
           {"ratio", or_null(result.ratio())},
           {"scatter", or_null(published.scatter)},
-          {"of", words_of(published.of)[static_cast<std::size_t>(published.of)]},
+          {"of", published.obstacles.empty() ? words_of(published.of)[static_cast<std::size_t>(published.of)]
+                                             : std::string_view("force")},
           {"golden", or_null(result.golden)},
           {"truth", or_null(result.truth)},
           {"ratio_to_truth", or_null(result.ratio_to_truth())},

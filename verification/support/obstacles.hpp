@@ -27,6 +27,18 @@ inline Obstacle ground() {
   return made;
 }
 
+/// The surface of a box with its centre at the origin: two triangles on each side, as the text of an .obj
+/// file.
+inline std::string box_surface(const Vector& half_sizes) {
+  std::string text = "# a box\n";
+  for (int corner = 0; corner < 8; ++corner) {
+    text +=
+        fmt::format("v {} {} {}\n", corner & 1 ? half_sizes[0] : -half_sizes[0],
+                    corner & 2 ? half_sizes[1] : -half_sizes[1], corner & 4 ? half_sizes[2] : -half_sizes[2]);
+  }
+  return text + "f 1 3 4 2\nf 5/1 6/1 8/1 7/1\nf 1 2 6\nf 1 6 5\nf 3 7 8 4\nf 1 5 7 3\nf -7 -5 -1\nf 2 8 6\n";
+}
+
 /// A column on a fixed foot.
 struct Column {
   Mesh mesh;

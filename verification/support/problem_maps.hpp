@@ -282,6 +282,8 @@ inline std::optional<std::string> text_of(const Problem& problem) {
       const Value& value = owner.*key.member;
       if constexpr (std::is_same_v<Value, LoadCurve>) {
         if (!value.times.empty()) put("times = {}\nfactors = {}", value.times, value.factors);
+      } else if constexpr (requires { Value::value_type::parameters(); }) {
+        if (!value.empty()) throw std::logic_error("random problems have no lists of tables");
       } else if constexpr (std::is_enum_v<Value>) {
         put("{} = '{}'", key.name, words_of(value)[static_cast<std::size_t>(value)]);
       } else if constexpr (std::is_same_v<Value, std::string>) {

@@ -111,7 +111,8 @@ def _annotation(cls, key):
     if cls._declared["table"] == "material" and key["type"] == "number" and key["count"] == 1:
         return "float | Sequence[float] | NDArray[Any]"  # it may differ from element to element
     kind = _TYPES.get(key["type"], "dict[str, object]")
-    kind = kind if key["count"] == 1 else "Sequence[float] | NDArray[Any]"
+    if key["count"] != 1:
+        kind = f"Sequence[{kind}]" if key["type"] == "table" else "Sequence[float] | NDArray[Any]"
     # The strength of a control may be "auto", and an axis may be a vector.
     return {"kappa": "float | str", "axis": "str | Sequence[float]"}.get(key["name"], kind)
 

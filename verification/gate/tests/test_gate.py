@@ -90,6 +90,11 @@ def set_tip(ratio):
     return lambda folder: folder.verdicts["published"][0]["values"][0].update(ratio=ratio)
 
 
+def be_a_force(folder):
+    """A published value of obstacles, which only the limits of its case judge."""
+    folder.verdicts["published"][0]["values"][0]["of"] = "force"
+
+
 def count(**counts):
     """A change of operations."""
     return lambda folder: folder.flops["records"][0].update(counts)
@@ -112,6 +117,7 @@ def lose_a_case(folder):
         (set_figure("rms_relative_error", None), f"VANISHED accuracy {COLUMN} golden rms"),
         (set_tip(0.9798), "WORSE accuracy cook-2, tl-full, double published tip z"),
         (set_tip(1.0202), "WORSE accuracy cook-2, tl-full, double published tip z"),
+        (be_a_force, "VANISHED accuracy cook-2, tl-full, double published tip z"),
         (fail, f"WORSE accuracy {COLUMN} status ok failed no longer comes to rest"),
         (lose_a_case, f"VANISHED accuracy {COLUMN} golden max"),
         (count(mul=180), "WORSE operations tl-none, neo-hookean, kernel, element mul 179 180 +1;"),
