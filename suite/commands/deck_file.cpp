@@ -23,7 +23,7 @@ void require_expressible(const Scene& scene) {
     throw InputError(fmt::format("{}: {}", scene.settings.file.string(), what));
   };
   if (const BodyForce* other = first_not_dead(scene.forces))
-    refuse(fmt::format("a deck cannot hold a {}; allowed are dead loads", other->traits().name));
+    refuse(fmt::format("a deck cannot hold a {}; allowed: dead loads", other->traits().name));
   if (!scene.ties.empty()) refuse("a deck cannot hold hanging nodes, which refinement and ties make");
   if (scene.settings.quasi_static) return;
   if (!scene.initial_velocities.empty()) refuse("a deck cannot hold initial velocities");
