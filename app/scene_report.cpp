@@ -99,8 +99,7 @@ void warn_of_units(const Case& description, const Scene& scene, const std::strin
     if (material.density * 9.81 * longest < most_weight * modulus) continue;
     fmt::print(
         "note: {}a body of {} with a density of {:.4g} kg/m^3 has a weight per area of {:.2g} times its "
-        "Young's "
-        "modulus, {}: units are m, Pa and kg/m^3\n",
+        "Young's modulus, {}: units are m, Pa and kg/m^3\n",
         of, length_text(longest), material.density, material.density * 9.81 * longest / modulus,
         with_prefix(modulus, "Pa"));
   }
