@@ -29,7 +29,7 @@ class Body:
     `element_sets` likewise for elements. All attributes may be changed; the mesh itself may not.
 
     `repr(body)` is its case file: `sg.Body.read` reads it, and so does `sandglass run`. Raises
-    TypeError for arguments of another type, and InputError, with the words of the solver, for
+    TypeError for arguments of another type, and InputError, with the solver's message, for
     wrong meshes; values of other tables are checked by `solve` and `simulation`.
     """
 
