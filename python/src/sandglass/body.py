@@ -136,7 +136,7 @@ class Body:
             accuracy = method.pop("accuracy", None)
             if accuracy is None:
                 raise _sandglass.InputError(
-                    "against: needs the largest error allowed, such as accuracy='2%'"
+                    "against: needs accuracy, the largest allowed error, such as accuracy='2%'"
                 )
             accuracy = quantity_text("accuracy", accuracy)
         elif isinstance(method.get("accuracy"), str):
