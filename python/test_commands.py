@@ -23,7 +23,7 @@ COMMANDS = {
             "--estimate": "`sg.estimate`",
             "--describe": "`help(sg.Dynamics)` and so on",
             "--checkpoint": "`sg.Simulation.save_checkpoint` and `resume`",
-            "--checkpoint-every": "none: a simulation saves when you say",
+            "--checkpoint-every": "none, as you choose when a simulation saves",
         },
     ),
     "verify": ("sg.verify", {"--no-costs": "`costs=False`"}),
