@@ -34,20 +34,20 @@ constexpr std::string_view mesh_file = R"(
 mesh.file = "FILE": instead of a generator, a mesh of hexahedra, in m: .h5 as `sandglass mesh` writes it,
   .msh of Gmsh (2.2, 4.1), .inp of Abaqus or CalculiX (C3D8...), .vtu or .vtk. Its physical groups, its NSETs and
   ELSETs, its point arrays of 0 and 1 are node sets by their names; rules of [sets] add others, and replace
-  those of the same name. Or a labelled image, .npy with mesh.spacing = [x, y, z], the size of a voxel in m, or
+  sets of the same name. Or a labelled image, .npy with mesh.spacing = [x, y, z], the size of a voxel in m, or
   .nii of NIfTI: an element for each voxel that is not 0, the element set label-N for each label N
 )";
 
 constexpr std::string_view bodies = R"(
-[[mesh.bodies]], several times: bodies of one mesh, each with a generator and its keys, and with name, which is
-  also that of the sets of its nodes and elements, turn = [x, y, z] (default: none), a rotation about the origin in
-  degrees whose direction is its axis, and offset = [x, y, z] in m (default: none), a displacement after it
+[[mesh.bodies]], several times: bodies of one mesh, each with a generator and its keys, and with name, which also
+  names the sets of its nodes and elements; turn = [x, y, z] in degrees (default: none), a rotation about the origin
+  whose direction is its axis; and offset = [x, y, z] in m (default: none), a displacement after the rotation
 )";
 
 constexpr std::string_view materials = R"(
 material.fibres = { axis = "x", "y" or "z", center = [x, y, z] in m (default: the origin), radii = [r0, r1] in m,
-  angles = [a0, a1] in degrees }: fibres at an angle to the circle that is linear between two radii; sheets are
-  radial. Or { file = "FILE" }: a line for each element, with three numbers for its fibres, or six for its
+  angles = [a0, a1] in degrees }: fibres at an angle to the circle; the angle is linear between two radii, and
+  sheets are radial. Or { file = "FILE" }: a line for each element, with three numbers for its fibres, or six for its
   fibres and sheets
 [[materials]] instead of [material], several times, with the same keys and elements = NAME, an element set; one
   of them may leave it out and is the material of all other elements

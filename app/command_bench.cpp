@@ -107,27 +107,23 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "bench",
       "time every method per element and step, and compare it with the speed of the machine.\n"
-      "All variants are timed in turn in one process, after their forces were compared with those in double\n"
-      "precision on one thread; one that is wrong gets no time, and the exit code is 1. sandglass-scalar "
-      "has\n"
-      "kernels that compute one element at a time too, and compares with those. Traffic counts every\n"
-      "constant and row of a step once. Above 100 % of memory a mesh stays in a cache; the roofline holds "
-      "it\n"
-      "against the triad over arrays of its own size. --device adds rows for another processor, where "
-      "the\n"
-      "state stays between steps: its bytes, and shares of what this one could.\n"
+      "All variants are timed in turn in one process, after a comparison of their forces with forces in\n"
+      "double precision on one thread; a variant with wrong forces is not timed, and the exit code is 1.\n"
+      "sandglass-scalar also has kernels for one element at a time, and compares with them. Traffic counts\n"
+      "every constant and row of a step once. A mesh above 100 % of memory stays in a cache; the roofline\n"
+      "takes the bandwidth of the triad over arrays of the mesh's size. --device adds rows for another\n"
+      "processor, on which the state stays between steps; shares are relative to this processor.\n"
       "With --rest: wall time from the model to static equilibrium, the median of three runs. Further runs,\n"
-      "stopped earlier, find by bisection after how many force evaluations all displacements differ from "
-      "the\n"
-      "final ones by at most 1 % and 0.1 % of the largest imposed one; their seconds are that share of the\n"
-      "median");
+      "stopped earlier, find by bisection after how many evaluations of the forces all displacements differ\n"
+      "from the final ones by at most 1 % and 0.1 % of the largest imposed one; their seconds are the\n"
+      "corresponding share of the median");
   command->add_option("CASE", options->names,
                       "names or files of cases; default: ellipsoid-indentation unless boxes are given, with "
                       "--rest all canonical quasi-static cases");
   auto* rest = command->add_flag("--rest", options->rest, "time quasi-static cases until static equilibrium");
-  auto* bodies =
-      command->add_option("--bodies", options->bodies,
-                          "time this many bodies of each case (default: column) side by side and one by one");
+  auto* bodies = command->add_option(
+      "--bodies", options->bodies,
+      "time this many bodies of each case (default: column), side by side and one by one");
   bodies->excludes(rest);
   command->add_option("-e,--elements", options->elements, "also time boxes of about this many elements")
       ->excludes(rest)
@@ -143,7 +139,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("-m,--methods", options->methods,
                    "methods, see `sandglass methods`; default: all, with --rest tl-perturbation and "
-                   "tl-mean-dilatation, with --bodies those that run side by side")
+                   "tl-mean-dilatation, with --bodies all that run side by side")
       ->type_name("METHOD");
   command->add_option("-p,--precision", options->precisions, "double, float or both")->capture_default_str();
   command

@@ -43,24 +43,23 @@ void add_kernels_command(CLI::App& app) {
   for (const Dialect& dialect : dialects()) names.emplace_back(dialect.name);
   CLI::App* command = app.add_subcommand(
       "kernels",
-      "write the force of a method's elements as source for other processors.\n"
-      "The kernel is straight-line code, recorded from the one that runs here, for an elastic law of a case; "
-      "a\n"
-      "comment in the text describes its arrays. Without contraction into fused operations its results are\n"
-      "those of the kernel on plain numbers, bit by bit");
+      "write the force of a method's elements as source code for other processors.\n"
+      "The text is straight-line code, recorded from the program's own kernel, for an elastic law of a "
+      "case;\n"
+      "a comment describes its arrays. Without contraction into fused operations its results equal the\n"
+      "kernel's on plain numbers, bit by bit");
   command->add_option("METHOD", options->request.method, "see `sandglass methods`")->required();
-  command->add_option("CASE", options->case_name, "name or file of the case whose material it is for")
-      ->required();
+  command->add_option("CASE", options->case_name, "name or file of the case with the material")->required();
   command->add_option("--dialect", options->request.dialect, "the language")
       ->check(CLI::IsMember(names))
       ->capture_default_str();
   command->add_option("-p,--precision", options->request.precision,
-                      "double or float; default: double where the dialect has it");
+                      "double or float; default: double if the dialect has it");
   command->add_option("--material", options->request.material,
                       "number of the material, from 1, if the case has several");
   command->add_flag(
       "--step", options->request.step,
-      "add the kernels that take steps where the state is; the force then reads nodes by places");
+      "add the kernels of nodes, which take time steps; the force then reads nodes by their places");
   command->add_option("--constants", options->constants,
                       "also write the array `constants` for the elements of the case's mesh to this file");
   command->add_option("-o,--output", options->output, "write to this file instead of printing");

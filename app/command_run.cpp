@@ -240,11 +240,12 @@ void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks>
                   "highest level over the largest imposed displacement; default: {:g}%",
                   100.0 * default_accuracy));
   command
-      ->add_option("--against", options->against,
-                   "with 'truth', --accuracy is the largest distance from the exact answer, over the largest "
-                   "imposed displacement, at any node of the case's mesh: the mesh is refined where the "
-                   "mean-dilatation element errs, until the estimated error is within this limit. Exit code "
-                   "1 if that element is accurate enough but METHOD is not")
+      ->add_option(
+          "--against", options->against,
+          "with 'truth', --accuracy is the largest distance from the exact answer at any node of the case's "
+          "mesh, over the largest imposed displacement: the mesh is refined where the "
+          "mean-dilatation element errs, until the estimated error is within this limit. Exit code "
+          "1 if that element is accurate enough but METHOD is not")
       ->check(CLI::IsMember({"truth"}));
   command->add_option(
       "--sleep", options->sleep,

@@ -95,9 +95,8 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
       "over the profile, rms;\noperations and ns per element and step, measured as in `bench`; mean step of "
       "the case's own motion, and seconds per\nsimulated second with it; evaluations and seconds of the "
       "static solution, or steps and seconds of a motion, while other\nruns share the machine; finding: good "
-      "means at most 1 %, or the golden's own distance from the truth, up to 10 %; beyond, up to "
-      "that\ndistance: not "
-      "judged\n");
+      "means at most 1 %, or the golden's own distance from the truth, up to 10 %; larger\nerrors up to "
+      "that distance are not judged\n");
   const std::string* case_name = nullptr;
   for (const Verdict* v : rows_of(verdicts)) {
     if (in_tables(*v)) continue;

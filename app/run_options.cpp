@@ -57,11 +57,12 @@ void require_sensible(const RunOptions& options) {
   }
   if (!options.against.empty()) {
     if (!options.accuracy)
-      throw InputError("--against: needs the largest error allowed, such as --accuracy 2%");
+      throw InputError("--against: needs --accuracy, the largest allowed error, such as --accuracy 2%");
     if (options.sleep)
       throw InputError("--against: a refined mesh is computed as a whole; leave out --sleep");
     if (!options.checkpoint.empty())
-      throw InputError("--against: a run that refines its mesh keeps no checkpoints; leave out --checkpoint");
+      throw InputError(
+          "--against: a run that refines its mesh writes no checkpoints; leave out --checkpoint");
   }
   if (options.ranks->count() > 1 &&
       (options.sleep || !options.against.empty() || options.estimate == "truth")) {
@@ -70,7 +71,7 @@ void require_sensible(const RunOptions& options) {
         "ranks; allowed: one rank with more --threads");
   }
   if (options.sleep && !options.checkpoint.empty()) {
-    throw InputError("--sleep: such a run keeps no checkpoints; leave out --checkpoint");
+    throw InputError("--sleep: such a run writes no checkpoints; leave out --checkpoint");
   }
 }
 
@@ -92,8 +93,9 @@ void require_supported(const RunOptions& options, const Scene& scene) {
   }
   const bool refines = options.estimate == "truth" || !options.against.empty();
   if (refines && movable_of(scene.forces).size() < contacts_of(scene.forces).size()) {
-    refuse(options.against.empty() ? "--estimate truth" : "--against truth",
-           "refined meshes do not know which points of a [[contact]] touch; allowed: cases without one");
+    refuse(
+        options.against.empty() ? "--estimate truth" : "--against truth",
+        "a refined mesh does not inherit the touching points of a [[contact]]; allowed: cases without one");
   }
 }
 

@@ -98,10 +98,10 @@ void warn_of_units(const Case& description, const Scene& scene, const std::strin
     const double modulus = young_modulus(elastic_law(kernel_law(material)));
     if (material.density * 9.81 * longest < most_weight * modulus) continue;
     fmt::print(
-        "note: {}a body of {} with a Young's modulus of {} and a density of {:.4g} kg/m^3 would weigh {:.2g} "
-        "times what it resists: units are m, Pa and kg/m^3\n",
-        of, length_text(longest), with_prefix(modulus, "Pa"), material.density,
-        material.density * 9.81 * longest / modulus);
+        "note: {}a body of {} with a density of {:.4g} kg/m^3 has a weight per area of {:.2g} times its "
+        "Young's modulus, {}: units are m, Pa and kg/m^3\n",
+        of, length_text(longest), material.density, material.density * 9.81 * longest / modulus,
+        with_prefix(modulus, "Pa"));
   }
 }
 

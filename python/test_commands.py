@@ -23,7 +23,7 @@ COMMANDS = {
             "--estimate": "`sg.estimate`",
             "--describe": "`help(sg.Dynamics)` and so on",
             "--checkpoint": "`sg.Simulation.save_checkpoint` and `resume`",
-            "--checkpoint-every": "none: a simulation saves when you say",
+            "--checkpoint-every": "none, as you choose when a simulation saves",
         },
     ),
     "verify": ("sg.verify", {"--no-costs": "`costs=False`"}),
@@ -227,7 +227,7 @@ def test_a_run_may_refine_its_mesh_or_let_elements_sleep(block):
     refined, whole = body.solve(against="truth", accuracy="3%"), body.solve()
     assert len(refined.points) > len(whole.points) and refined.summary["error"] <= 0.03
     assert np.array_equal(refined.points[: len(whole.points)], whole.points)
-    with pytest.raises(sg.InputError, match="needs the largest error allowed"):
+    with pytest.raises(sg.InputError, match="needs accuracy, the largest allowed error"):
         body.solve(against="truth")
     asleep = body.solve(sleep="1%")
     far = np.linalg.norm(asleep.displacement - whole.displacement, axis=1).max()

@@ -2,7 +2,7 @@
 
 Usage: /usr/bin/python3 reports/make_headline.py [RECORDS]
 RECORDS: build/report/figures/speed-accuracy.json, which `reports/make_report.py` writes. They are
-stored in reports/figures/ beside the figure; the texts of README.md and docs/results.md follow.
+stored in reports/figures/ beside the figure; the text of README.md follows.
 Exit codes: 0 done, 2 an input is missing or broken.
 """
 
@@ -20,27 +20,18 @@ from sandglass_report import headline
 RECORDS = "build/report/figures/speed-accuracy.json"
 FOLDER = "reports/figures/"
 FIGURE = f"{FOLDER}{headline.NAME}.svg"
-# Texts with the figure -> the paths of figure and glossary from their folder.
-TEXTS = {
-    "README.md": (FIGURE, "docs/glossary.md"),
-    "docs/results.md": (f"../{FIGURE}", "glossary.md"),
-}
+README = "README.md"
+GLOSSARY = "docs/glossary.md"
 
 
 def make(records, root=ROOT):
-    """Stores the records in a tree, and makes its figure and texts. Raises InputError."""
+    """Stores the records in a tree, and makes its figure and text. Raises InputError."""
     document = read_json(records, "ci/verify")
     headline.require_valid(records, document)
-    texts = {
-        root
-        / name: headline.replaced(
-            (root / name).read_text(encoding="utf-8"), headline.caption(document, *paths)
-        )
-        for name, paths in TEXTS.items()
-    }
+    text = (root / README).read_text(encoding="utf-8")
+    readme = headline.replaced(text, headline.caption(document, FIGURE, GLOSSARY))
     write_json(root / FOLDER / f"{headline.NAME}.json", document)
-    texts[root / FIGURE] = headline.figure(document)
-    for path, text in texts.items():
+    for path, text in ((root / README, readme), (root / FIGURE, headline.figure(document))):
         write_whole(path, text)
         print(path)
 

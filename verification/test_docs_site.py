@@ -25,7 +25,7 @@ ANSWERS = {
     "How do I cite it?": "CITATION.cff",
     "Is there a BibTeX entry?": "@software{sandglass,",
     "Can it read tetrahedra, or an STL surface?": "nothing here fills a surface with elements",
-    "Was it compared with experiments?": "The judges are other computations",
+    "Was it compared with experiments?": "With one: a cantilever of silicone",
     "My liver at .49 in real time: which element, how many?": "elements times the cost of one",
     "What force does a haptic device get?": "is the force (N) that holds or drives a set of nodes",
     "How do I test my own solver with it?": "score FILE --case CASE --limit max=2%",
@@ -39,7 +39,7 @@ ANSWERS = {
     "Why does my mesh fold?": "Zigzags from node to node are hourglass modes",
     "What are the units?": "SI: m, s, kg, N, Pa",
     "Can it run on many machines?": "mpirun -n 2 build/mpi/sandglass run column",
-    "Does it do contact?": "a closed surface, which may move. In motions,",
+    "Does it do contact?": "with friction, in static equilibrium and in motion",
 }
 
 

@@ -286,7 +286,7 @@ def test_every_equation_of_the_paper_is_in_the_theory_and_in_the_code():
 
 def test_operations_of_the_control_are_those_that_are_counted():
     text = DOCUMENTS["solver/element/README.md"]
-    ours, papers = re.search(r"takes (\d+) operations in place of the paper's (\d+)", text).groups()
+    ours, papers = re.search(r"takes (\d+) operations instead of the paper's (\d+)", text).groups()
     counted = sandglass("flops").stdout
     for form, total in (("kernel", ours), ("paper", papers)):
         assert re.search(rf"^tl-perturbation +{form} +hourglass .* {total} *$", counted, re.M), form

@@ -53,14 +53,14 @@ run block.toml --checkpoint c --checkpoint-every=often | --checkpoint-every
 run block.toml --checkpoint none/c | none/c: cannot be written
 run block.toml -o one.h5 --checkpoint one.h5 | must be another file than --output
 
-run column --against truth | --against: needs the largest error allowed
+run column --against truth | --against: needs --accuracy, the largest allowed error
 run column --against golden --accuracy 1% | --against: golden not in {truth}
 run column --against truth --accuracy 0 | --accuracy = '0' must be a share
 run bar-wave --against truth --accuracy 1% | 'bar-wave' is a dynamic case
 run column --against truth --accuracy 1% --sleep 1% | leave out --sleep
 run column --against truth --accuracy 1% --checkpoint kept | leave out --checkpoint
-run two-spheres --against truth --accuracy 1% | --against truth: refined meshes & [[contact]]
-run two-spheres --estimate truth | --estimate truth: refined meshes & [[contact]]
+run two-spheres --against truth --accuracy 1% | --against truth: a refined mesh & [[contact]]
+run two-spheres --estimate truth | --estimate truth: a refined mesh & [[contact]]
 run column --sleep 0 | --sleep = '0' must be a share in (0, 1]
 run column --sleep 1 | --sleep = '1' is ambiguous; for one percent write 1%
 run column --sleep 120% | --sleep = '120%' must be a share in (0, 1]

@@ -38,8 +38,8 @@ def contact_plate(records, palette):
         "A rigid ball pressed into a block: error of the force against Hertz. Cost: evaluations to "
         "static equilibrium times counted operations of the elements’ forces. Lines join "
         f"{meshes} elements across the contact, or penalties: tl-perturbation, darker on finer "
-        "meshes. Forces pass Hertz’s on the way, and the block is no half-space: errors below "
-        "0.1 % are drawn there."
+        "meshes. Errors below 0.1 % are drawn at 0.1 %: the force crosses Hertz’s value as meshes "
+        "become finer, and the block is not a half-space."
     )
     return Plate("contact", "Error against cost of contact", panels, 2, note, legend)
 

@@ -27,7 +27,7 @@ def experiment_plate(tips, palette):
     legend += tuple((m, palette.colour(m), palette.mark(m)) for m in drawn)
     missing = [m for m in dict.fromkeys(tip.method for tip in tips) if m not in drawn]
     note = f"Computed over measured values ({tips[0].source})."
-    note += f" Farther off than {100 * WITHIN:.0f} %: {', '.join(missing)}." * bool(missing)
+    note += f" Not drawn, more than {100 * WITHIN:.0f} % off: {', '.join(missing)}." * bool(missing)
     return Plate("experiment", "Against an experiment", panels, 2, note, legend)
 
 

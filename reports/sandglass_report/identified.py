@@ -35,7 +35,7 @@ def identified_plate(records, palette):
     methods = dict.fromkeys(found["method"] for found in records if found["kappa"] is None)
     legend = tuple((m, palette.colour(m), palette.mark(m)) for m in methods)
     note = (
-        "Identified over true Young's modulus, minus one. Nothing is noisy, and all else is known. "
+        "Identified over true Young's modulus, minus one, without noise. "
         "Arrowheads: beyond the axis. Over kappa: tl-perturbation, darker on finer meshes."
     )
     return Plate("identified", "Bias of an identified stiffness", tuple(panels), 2, note, legend)

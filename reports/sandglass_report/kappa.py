@@ -67,7 +67,7 @@ def _panel(subject, palette, reference, limits):
             # Strokes mean the same figure for all methods, so they are named for one only.
             _draw_curve(axes, method, runs, palette, reference, named=number == 0)
         _draw_auto(axes, curves, palette)
-        for name, dashes, _ in FIGURES:  # a smaller error to the golden than this is no gain
+        for name, dashes, _ in FIGURES:  # smaller errors to the golden bring no gain
             if levels.get(name):
                 label = "golden to truth, max" if name == "max" else None
                 strokes = {"color": style.GOLDEN[0], "linestyle": dashes, "linewidth": 1.3}

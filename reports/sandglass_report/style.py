@@ -59,7 +59,7 @@ FIGURE_NAMES = {
 def why_empty(subject, reference):
     """The reason why a chart of a case against a reference is empty."""
     if getattr(subject, reference) is None:
-        return f"no {reference} is stored for this case yet"
+        return f"no {reference} is stored"
     return f"no run has a figure against the {reference}"
 
 

@@ -29,7 +29,7 @@ def test_measured_values_have_a_plate_and_no_table():
     )
     plate = experiment_plate(all_tips, PALETTE)
     assert [panel.title for panel in plate.panels] == ["beam", "swing"]
-    assert "Farther off than 30 %: tl-full." in plate.note
+    assert "Not drawn, more than 30 % off: tl-full." in plate.note
     assert "Golden: short: 1.100" in plate.panels[0].alt and "Golden" not in plate.panels[1].alt
     assert [words for words, _, _ in plate.legend] == ["measured ± scatter", "golden", "tl-none"]
     assert tip_tables(all_tips) == ()

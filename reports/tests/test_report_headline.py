@@ -63,11 +63,11 @@ def test_the_stored_figure_is_made_from_its_records():
     assert (folder / f"{NAME}.svg").read_text(encoding="utf-8") == figure(document)
 
 
-@pytest.mark.parametrize("name", make_headline.TEXTS)
-def test_the_text_around_the_figure_has_its_numbers(name):
+def test_the_text_around_the_figure_has_its_numbers():
     document = json.loads((ROOT / make_headline.FOLDER / f"{NAME}.json").read_text())
-    text = (ROOT / name).read_text(encoding="utf-8")
-    assert headline.replaced(text, caption(document, *make_headline.TEXTS[name])) == text
+    text = (ROOT / make_headline.README).read_text(encoding="utf-8")
+    words = caption(document, make_headline.FIGURE, make_headline.GLOSSARY)
+    assert headline.replaced(text, words) == text
 
 
 def test_the_stored_records_are_those_of_the_program(tmp_path):
@@ -142,14 +142,13 @@ def test_without_a_number_there_is_no_figure(changed):
 
 def test_one_command_makes_figure_records_and_texts(tmp_path, document, capsys):
     tree, records = tmp_path / "tree", tmp_path / "records.json"
-    (tree / "docs").mkdir(parents=True)
     (tree / make_headline.FOLDER).mkdir(parents=True)
-    for name in make_headline.TEXTS:
-        (tree / name).write_text(f"before\n{headline.START}\nold\n{headline.END}\nafter\n")
+    readme = tree / make_headline.README
+    readme.write_text(f"before\n{headline.START}\nold\n{headline.END}\nafter\n")
     records.write_text(json.dumps(document))
     make_headline.make(records, tree)
-    assert capsys.readouterr().out.count("\n") == 3
-    text = (tree / "README.md").read_text()
+    assert capsys.readouterr().out.count("\n") == 2
+    text = readme.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "\nold\n" not in text
     assert "(reports/figures/speed-accuracy.svg)" in text and "tl-full 30 %, 24 %" in text
     words = " ".join(text.split())  # of lines that break anywhere
@@ -157,7 +156,6 @@ def test_one_command_makes_figure_records_and_texts(tmp_path, document, capsys):
         "its error to the truth is 14 %" in words
         and "0.16 s per simulated second instead of 0.46 s" in words
     )
-    assert "(../reports/figures/speed-accuracy.svg)" in (tree / "docs/results.md").read_text()
     assert (tree / make_headline.FIGURE).read_text() == figure(document)
     assert json.loads((tree / make_headline.FOLDER / f"{NAME}.json").read_text()) == document
 

@@ -188,12 +188,13 @@ std::string describe_comparison_keys() {
 [profile] set = NAME, order = "x" | "y" | "z" | "around-x" | "around-y" | "around-z"
 [comparison] kappas = [numbers], golden = "FILE.h5", truth = "FILE.h5"
 [[published]] set = NAME, component = "x", ... or "around-x", ..., value in m or rad: mean displacement or
-  rotation of the set, source: a text; or instead of set, obstacles = [NAMES], value in N: the sum of their forces
-  on the body at the end; over = s (default: 0): its mean over this time at the end, of all checks (check_interval)
-[[measured]] the same, with scatter: of its repetitions, at = [x, y, z]: instead of the mean the displacement of
-  a point that moves with the set (also of [[published]]), of: "end", "peak" or "period" (s) of a motion
+  rotation of the set, source: a text; or, instead of set, obstacles = [NAMES], value in N: the sum of their
+  forces on the body at the end; over = s (default: 0): its mean over so much time at the end, of all checks
+  (check_interval)
+[[measured]] the same keys, and scatter: of the repetitions; at = [x, y, z], also of [[published]]: a point that
+  moves with the set, whose displacement replaces the mean; of = "end", "peak" or "period" (s): of a motion
 [[published.programs]] program: its name and element, values = [numbers] of the same motion, elements = [number
-  per side of each mesh, as in the variants' names] (without it: one value, converged or on an unknown mesh), source
+  per side of each mesh, as in the names of variants] (default: one value, converged or on an unknown mesh), source
 [[expect]] method, kappa (number, "auto" or "best"), reference ("golden", "truth", "published" or "measured"),
   figure, below or above, reason
 )";

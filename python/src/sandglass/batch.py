@@ -11,8 +11,8 @@ class Batch:
 
     They share mesh, kinds of laws, densities, method, damping and step; each has its own stiffness,
     parameters of laws, driven nodes and load factor, which are arrays with a row for each body.
-    Results are those of an `sg.Simulation` of each body up to rounding: sums have another order.
-    One number for all bodies will do wherever an array (bodies,) is expected. Raises InputError and
+    Results equal those of an `sg.Simulation` of each body up to rounding: sums have another order.
+    A single number may replace any array (bodies,). Raises InputError and
     TypeError, and ComputationError, which names the body, if elements are inverted.
     """
 
@@ -66,7 +66,7 @@ class Batch:
     def advance(self, seconds):
         """Advances all bodies; driven nodes and forces change linearly. Other threads run.
 
-        Every `check_interval` steps (of `sg.Dynamics`) inverted elements and NaN are looked for.
+        Checks for inverted elements and NaN every `check_interval` steps (of `sg.Dynamics`).
         """
         self._batch.advance(number("seconds", seconds))
 

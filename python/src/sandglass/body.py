@@ -29,7 +29,7 @@ class Body:
     `element_sets` likewise for elements. All attributes may be changed; the mesh itself may not.
 
     `repr(body)` is its case file: `sg.Body.read` reads it, and so does `sandglass run`. Raises
-    TypeError for arguments of another type, and InputError, with the words of the solver, for
+    TypeError for arguments of another type, and InputError, with the solver's message, for
     wrong meshes; values of other tables are checked by `solve` and `simulation`.
     """
 
@@ -136,7 +136,7 @@ class Body:
             accuracy = method.pop("accuracy", None)
             if accuracy is None:
                 raise _sandglass.InputError(
-                    "against: needs the largest error allowed, such as accuracy='2%'"
+                    "against: needs accuracy, the largest allowed error, such as accuracy='2%'"
                 )
             accuracy = quantity_text("accuracy", accuracy)
         elif isinstance(method.get("accuracy"), str):

@@ -3,8 +3,8 @@
 A case is the name of a canonical case, the path of a case file, or an `sg.Body`. Named cases have
 stored references; a body has those that its tables name. All functions work in the library itself,
 release the GIL, end on Ctrl-C and, with `progress=True`, show how far they are; a callable gets
-the completed share of the work instead. They raise InputError and ComputationError with the words
-of the program, and TypeError for arguments of another type.
+the completed share of the work instead. They raise InputError and ComputationError with the
+messages of the program, and TypeError for arguments of another type.
 """
 
 import contextlib
@@ -164,9 +164,9 @@ def kernels(
 ):
     """The force of a method's elements with a case's law as source code for other processors.
 
-    `dialect`: the language; a wrong one is answered with those known. `precision`: "double" or
+    `dialect`: the language; the message about a wrong one lists all. `precision`: "double" or
     "float"; None: double where the dialect has it. `material`: its number in the case, from 1.
-    `step`: add the kernels that take steps where the state is; the force then reads nodes by place.
+    `step`: add the kernels of nodes, which take time steps; the force then reads nodes by place.
     `constants`: a file for the array of this name for the elements of the case's mesh, in the
     numbers of the kernel. Returns the text.
     """
@@ -225,7 +225,7 @@ def bench(
     `methods`, `precision`: lists of those to time. `repetitions`: batches of about 0.5 ms for each
     variant. `device`: also time another processor, such as "opencl". `rest`: times quasi-static
     cases until static equilibrium instead. `bodies`: times this many bodies of each case side by
-    side and one by one instead. A variant with a wrong result gets no time. Returns a record with
+    side and one by one instead. A variant with a wrong result is not timed. Returns a record with
     `records`.
     """
     if type(rest) is not bool:

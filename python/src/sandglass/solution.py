@@ -105,7 +105,7 @@ class Solution:
         return self._answer.estimate(text("against", against))
 
     def gradient(self, displacement=None, reactions=None, *, materials=True, points=False):
-        """The derivatives of a scalar J of this answer by all that it depends on.
+        """The derivatives of a scalar J of this answer by everything that J depends on.
 
         For a static answer: `displacement`: dJ/du, (n, 3). `reactions`: a dict from driven sets to
         dJ/dR, (3,). `points`: whether also by the undeformed positions of nodes, which takes
@@ -113,14 +113,14 @@ class Solution:
         `solve`. Dead loads and springs may act. Levels of adaptive elements count as constant.
 
         For a motion: `displacement`: dJ/du at all frames, (frames, n, 3). The steps are computed
-        again and followed back, each as it was: the derivative is that of the computed motion at
-        constant steps. Memory grows as the root of their number. `materials`: whether also by the
-        parameters of laws, which takes half of the time or more.
+        again and followed back, with their lengths: the result is the derivative of the computed
+        motion at constant steps. Memory grows as the root of their number. `materials`: whether
+        also by the parameters of laws, which takes half of the time or more.
 
         Returns an `sg.Gradient`. Raises InputError where the forces of elements have no potential
-        (Updated Lagrangian methods), with obstacles, in single precision; for static answers with
-        pressures; for motions with viscoelastic laws, subcycles, tl-adaptive, and by reactions or
-        points; ComputationError for a static answer that is not stable.
+        (Updated Lagrangian methods), with obstacles or contact, in single precision; for static
+        answers with pressures; for motions with viscoelastic laws, subcycles, tl-adaptive, and by
+        reactions or points; ComputationError for a static answer that is not stable.
         """
         reactions = _weights({} if reactions is None else reactions)
         for name, value in {"materials": materials, "points": points}.items():
@@ -132,7 +132,7 @@ class Solution:
         return Gradient(**{key: _fixed(value) for key, value in found.items()})
 
     def sensitivity(self, materials=None, *, forces=None, imposed=None):
-        """The derivative of the displacements along a change of what the answer depends on; (n, 3).
+        """The derivative of the displacements along one change of the arguments; (n, 3).
 
         `materials`: the changes of the parameters of each material, a list of dicts such as
         `[{"young_modulus": 1.0}, {}]`, or a dict for a body of one material; of a parameter that is

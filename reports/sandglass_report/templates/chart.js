@@ -178,7 +178,8 @@ function startChart(Plotly) {
     const name = (p) => [p.method + (p.accuracy ? ` with accuracy ${percent(p.accuracy)}` : ""), p.precision, mesh(p)].join(", ");
     tools.querySelector(".answer").textContent = best
       ? `Cheapest within ${percent(view.tolerance)} and ${seconds(view.budget)}: ${name(best)}: ${percent(errorOf(best, view))} at ${seconds(best[view.cost])}. ${enough.length} of ${ours.length} are within both.`
-      : `None of the ${ours.length} shown is within ${percent(view.tolerance)} and ${seconds(view.budget)}.`;
+      : ours.length ? `None of the ${ours.length} shown is within ${percent(view.tolerance)} and ${seconds(view.budget)}.`
+        : "No method of Sandglass with this time is shown.";
     const cell = (text, kind) => Object.assign(document.createElement("td"), { textContent: text, className: kind ?? "" });
     tools.querySelector("tbody").replaceChildren(...enough.slice(0, 8).map((i) => {
       const p = data.points[i];
