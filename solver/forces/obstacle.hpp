@@ -16,8 +16,9 @@ struct ObstacleMove {
 
   static constexpr auto parameters() {
     using M = ObstacleMove;
-    return std::tuple{Parameter{&M::displacement, "displacement", "m", Range::any(), "how far it moves"},
-                      Parameter{&M::curve, "curve", "-", Range::any(), "as of the obstacle", false}};
+    return std::tuple{
+        Parameter{&M::displacement, "displacement", "m", Range::any(), "how far it moves"},
+        Parameter{&M::curve, "curve", "-", Range::any(), "factors of this displacement", false}};
   }
 };
 
@@ -62,7 +63,7 @@ struct Obstacle {
   static constexpr auto parameters() {
     using O = Obstacle;
     return std::tuple{
-        Parameter{&O::label, "name", "-", Range::any(), "under which its force is reported"},
+        Parameter{&O::label, "name", "-", Range::any(), "its name in reports of its force"},
         Parameter{&O::set, "set", "-", Range::any(), "node set with the boundary faces that may touch it"},
         Parameter{&O::shape, "shape", "-", Range::any(), "its shape"},
         Parameter{
@@ -73,18 +74,19 @@ struct Obstacle {
         Parameter{&O::end, "end", "m", Range::any(),
                   "the other end of the axis of a capsule or of a cylinder, which is infinite along it",
                   false},
-        Parameter{&O::normal, "normal", "-", Range::any(), "of the plane, towards the body", false},
+        Parameter{&O::normal, "normal", "-", Range::any(), "the normal of the plane, towards the body",
+                  false},
         Parameter{&O::radius, "radius", "m", Range::at_least(0.0), "of the sphere, capsule or cylinder",
                   false},
         Parameter{&O::half_sizes, "half_sizes", "m", Range::at_least(0.0),
                   "half the sizes of the box or ellipsoid along the coordinate axes", false},
         Parameter{&O::file, "file", "-", Range::any(), "of a closed surface of triangles in m, .stl or .obj",
                   false},
-        Parameter{&O::inside, "inside", "-", Range::any(), "whether the body is inside of it, as in a cavity",
+        Parameter{&O::inside, "inside", "-", Range::any(), "whether the body is in it, as in a cavity",
                   false},
         Parameter{&O::displacement, "displacement", "m", Range::any(), "how far it moves", false},
         Parameter{&O::curve, "curve", "-", Range::any(),
-                  "they multiply the displacement, in place of the loading curve of the case", false},
+                  "factors of the displacement, in place of the loading curve of the case", false},
         Parameter{
             &O::moves, "move", "-", Range::any(),
             "[[obstacle.move]], several times: further displacements that add to it, each with displacement "

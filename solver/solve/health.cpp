@@ -101,7 +101,8 @@ void require_static_contact(const Scene& scene) {
   if (remember_path(scene.forces) && scene.settings.relaxation.levels == 0 &&
       std::ranges::any_of(scene.curves, bends)) {
     throw InputError(
-        fmt::format("{}: [relaxation] levels is needed: friction at rest follows the load, and a load or the "
+        fmt::format("{}: [relaxation] levels is needed: friction in static equilibrium follows the load, and "
+                    "a load or the "
                     "friction has a curve; allowed: enough equal levels to follow it, such as levels = 20",
                     file));
   }
