@@ -60,10 +60,7 @@ class ObstacleContact : public ContactForce {
     return sum(is_surface ? std::get<SurfaceShape>(shape_).point() : obstacle_.point, 1.0, path_.start);
   }
 
-  double half_thickness() const final {
-    if (obstacle_.inside) return INFINITY;
-    return std::visit([](const auto& shape) { return shape.half_thickness(); }, shape_);
-  }
+  double half_thickness() const final { return obstacle_.inside ? INFINITY : half_of_shape(); }
   double travel(Factors changes) const final {
     double way = 0.0;
     for (std::size_t i = 0; i < 3; ++i) way += changes[path_.first_move + i];
@@ -101,6 +98,10 @@ class ObstacleContact : public ContactForce {
   virtual std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const = 0;
 
   bool rubs() const { return obstacle_.friction > 0.0; }
+
+  double half_of_shape() const {
+    return std::visit([](const auto& shape) { return shape.half_thickness(); }, shape_);
+  }
 
   /// Calls use(k, x, compute_gap) for all nodes, with the position x (m) in the frame of the obstacle.
   template <class Rows, class Use>
@@ -161,18 +162,21 @@ class ObstacleContact : public ContactForce {
 /// A node that comes to the inside must be pushed back against its way; one that stays outside may not have
 /// been inside, except that it may cut a corner. No distance changes by more than a point moves, so that the
 /// way is followed from place to place by the distance there. What is closer than `finest` may be inside.
+/// Most ways are too short to cut more of a corner than is allowed, or to turn; surfaces of triangles may be
+/// thinner than the box around them.
 inline bool ObstacleContact::passes(const Vector& x, const Gap& gap, const Vector& way) const {
-  const double half = half_thickness(), far = length(way);
-  if (gap.distance < -deep * half) return true;
-  if (gap.distance >= far) return false;
+  const double far = length(way), most_cut = shallow * half_of_shape();
+  if (gap.distance < -deep * half_thickness()) return true;
+  const bool is_short = far < 2.0 * most_cut, may_be_thinner = std::holds_alternative<SurfaceShape>(shape_);
+  if (gap.distance >= far || (is_short && !may_be_thinner)) return false;
   const Gap start = gap_at(difference(x, way));
   if (start.distance + gap.distance >= far) return false;
   constexpr double beyond_right_angle = -0.01;  // as sides of a box are, to the rounding of a file
   const bool turned = dot(start.normal, gap.normal) < beyond_right_angle;
   if (gap.distance < 0.0) return turned;
-  if (!turned && far < 2.0 * shallow * half) return false;
+  if (!turned && (is_short || obstacle_.inside)) return false;
   constexpr double finest = 1e-3;  // of the way
-  const double least = turned ? finest * far : -shallow * half;
+  const double least = turned ? finest * far : -most_cut;
   for (double done = 0.0; done < 1.0;) {
     const double distance = gap_at(sum(x, done - 1.0, way)).distance;
     if (distance < least) return true;

@@ -5,9 +5,9 @@ namespace sandglass {
 namespace {
 
 /// By how much of its height a triangle extends beyond its edges. Points keep their triangle that far, so
-/// that none alternates between two triangles; but in the answer they would lag behind where they slid. When
-/// the contact is augmented, each chooses the nearest triangle once again.
-constexpr double overhang = 0.1;
+/// that none alternates between two triangles. In the answer they would lag behind where they slid: when the
+/// contact is augmented, those that are clearly beyond choose the nearest triangle.
+constexpr double overhang = 0.1, clearly_beyond = 1e-3;
 
 /// Points that just fit are linearized as touching, up to this share of the shortest edge.
 constexpr double just_fits = 1e-6;
@@ -268,6 +268,7 @@ class RestingPair final : public SurfacePair {
                  way = memory.others[0][way_so_far];
     const bool fixed = memory.sums[3] != 0.0;
     const bool anew = !fixed && std::exchange(memory.others[0][chooses_again], 0.0) != 0.0;
+    const double kept = anew ? clearly_beyond : overhang;
     memory.sums[2] = 0.0;
     bool fits = false;
     for_each_point(memory, [&](const Side& side, std::size_t k, Row<double>* of_point) {
@@ -283,7 +284,7 @@ class RestingPair final : public SurfacePair {
       auto of_face = static_cast<std::size_t>(of_point[1][triangle]);
       if (touched) plane = onto.plane_at(face, of_face, x, of_onto);
       bool inside = touched && plane.gap <= farthest, moved = false;
-      if (!touched || anew || plane.least < -overhang) {
+      if (!touched || plane.least < -kept) {
         for (std::size_t s = 0; s < surfaces_.size() && !fits; ++s) surfaces_[s].fit(of_surface(memory, s));
         fits = true;
         const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), range,
