@@ -14,8 +14,7 @@ namespace sandglass {
 
 /// The factor of a load over time: a table, linear between its points and constant outside, or a formula.
 /// Without either it is the load factor of the case. In a quasi-static answer, time is the share of the load,
-/// 0 to 1. The declaration of a curve says what
-/// its factors multiply.
+/// 0 to 1. The declaration of a curve says what its factors multiply.
 struct LoadCurve {
   std::vector<double> times = {};  ///< s, increasing
   std::vector<double> factors = {};

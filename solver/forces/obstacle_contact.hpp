@@ -165,8 +165,8 @@ class ObstacleContact : public ContactForce {
 /// Most ways are too short to cut more of a corner than is allowed, or to turn; surfaces of triangles may be
 /// thinner than the box around them.
 inline bool ObstacleContact::passes(const Vector& x, const Gap& gap, const Vector& way) const {
-  const double far = length(way), most_cut = shallow * half_of_shape();
-  if (gap.distance < -deep * half_thickness()) return true;
+  const double far = length(way), half = half_of_shape(), most_cut = shallow * half;
+  if (!obstacle_.inside && gap.distance < -deep * half) return true;
   const bool is_short = far < 2.0 * most_cut, may_be_thinner = std::holds_alternative<SurfaceShape>(shape_);
   if (gap.distance >= far || (is_short && !may_be_thinner)) return false;
   const Gap start = gap_at(difference(x, way));

@@ -10,8 +10,8 @@ namespace {
 /// It keeps two rows for each node: how it would touch if that were not fixed, and contrary; its depth and
 /// the depth of its constant force, m; how it touches; and its place at the last load level, in the frame of
 /// the obstacle, m, and whether that is known. With friction also two rows of that level: from where the node
-/// slips, in the frame of the obstacle and relative to the undeformed body, m; the extension
-/// of its spring along the obstacle, m.
+/// slips, in the frame of the obstacle and relative to the undeformed body, m; the extension of its spring
+/// along the obstacle, m.
 class RestingContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;

@@ -57,7 +57,6 @@ template <class Real>
 MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elements)
     : elements_(elements),
       body_(model, elements),
-      mesh_(model.scene().mesh),
       materials_(model.scene().materials),
       moduli_(model_moduli(model)),
       stiffening_(model),

@@ -199,7 +199,6 @@ class MixedBody {
 
   const InternalForce<Real>& elements_;
   Body<Real> body_;
-  const Mesh& mesh_;
   const Materials& materials_;
   std::vector<ModelModuli> moduli_;  // of each material
   LawStiffening stiffening_;
