@@ -115,6 +115,41 @@ TwoBodies random_collision(RandomGeometry& random) {
   return bodies;
 }
 
+/// A bar hits a wall, or another bar, within the first step, whose force acts for half as long as others:
+/// what contact takes is counted in it as well, so that small motions keep their energy to rounding.
+TEST(KinematicContact, counts_the_first_step) {
+  const double L = 1.0, E = 1e4, rho = 1000.0, v = 0.01 * std::sqrt(E / rho);
+  for (const bool on_wall : {true, false}) {
+    for (const double share : {0.0, 0.3, 0.7}) {  // of the first step, until they touch
+      const double step = 0.5 * L / 10 / std::sqrt(E / rho), gap = share * v * step;
+      TwoBodies bars(box({0.1, 0.1, L}, {1, 1, 10}),
+                     moved(box({0.1, 0.1, L}, {1, 1, 10}), {0.0, 0.0, L + gap}),
+                     NeoHookean{.young_modulus = E, .poisson_ratio = 0.0}, rho);
+      Case& d = bars.description;
+      d.velocities = {{.set = "upper", .value = {0.0, 0.0, -v}}};
+      if (on_wall) {
+        Obstacle wall = ground();
+        wall.set = "over";
+        wall.point = {0.0, 0.0, L};
+        wall.method = Obstacle::Method::kinematic;
+        d.forces.of<Obstacle>() = {wall};
+      } else {
+        d.forces.of<Contact>() = {pair_of("over", "under", Contact::Method::kinematic)};
+      }
+      d.dynamics.time_step = step;
+      d.dynamics.duration = 10.0 * step;
+      d.dynamics.check_interval = 1;
+      const Scene scene = bars.scene();
+      Recorder recorder;
+      integrate(Model(scene, {"linear"}), recorder);
+      const double start = total_energy(recorder.rows.front());
+      EXPECT_GT(recorder.rows[1].friction, 0.01 * start);
+      for (const HistoryRow& row : recorder.rows)
+        EXPECT_NEAR(total_energy(row), start, 1e-9 * start) << share << " at " << row.time;
+    }
+  }
+}
+
 /// The boundary faces of some nodes.
 std::vector<Quadrilateral> skin_of(const Scene& scene, const std::vector<int>& nodes) {
   std::vector<Quadrilateral> faces;
@@ -124,10 +159,10 @@ std::vector<Quadrilateral> skin_of(const Scene& scene, const std::vector<int>& n
   return faces;
 }
 
-/// At speeds up to .3 of waves, by both methods, with friction and without: none gains energy beyond 1.2 %:
-/// of all, one gains 1.03 % (kinematic; as much with 400 sweeps instead of 20); before, 1.5 % by the
-/// kinematic method and 4.2 % by the penalty, where the closest point jumps at an edge. Momentum and its
-/// moment are kept to rounding. No body has its centre in the other.
+/// At speeds up to .3 of waves, by both methods, with friction and without, none gains energy beyond .1 %
+/// (kinematic; .012 % here) or 1 % (penalty; .45 %): before, 1.5 % and 4.2 %, as the force of the first step
+/// was counted wrongly, and the closest point jumped at an edge. Momentum and its moment are kept to
+/// rounding. No body has its centre in the other.
 TEST(SurfacePair, collides_at_random) {
   const long scenes = from_environment("SANDGLASS_SCENES", 200);
   RandomGeometry random(48);
@@ -146,7 +181,8 @@ TEST(SurfacePair, collides_at_random) {
       EXPECT_NE(std::string(error.what()).find("contact 'pair'"), std::string::npos) << what << error.what();
       continue;
     }
-    EXPECT_LT(Gain(recorder.rows).gained, 0.012 * total_energy(recorder.rows.front())) << what;
+    const double limit = contact.method == Contact::Method::kinematic ? 1e-3 : 0.01;
+    EXPECT_LT(Gain(recorder.rows).gained, limit * total_energy(recorder.rows.front())) << what;
     const auto &first = recorder.frames.front(), &last = recorder.frames.back();
     const Momentum before(model, first.u, first.v), after(model, last.u, last.v);
     EXPECT_LT(distance(before.linear, after.linear), 1e-12 * length(before.linear)) << what;

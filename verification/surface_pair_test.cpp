@@ -355,12 +355,16 @@ TEST(BoxTree, compares_few_of_many) {
 TEST(SurfacePair, names_what_is_wrong) {
   const NeoHookean law{.young_modulus = 1e4, .poisson_ratio = 0.3};
   constexpr auto kinematic = Contact::Method::kinematic;
-  const auto message = [&](double gap, const Contact& contact, std::vector<Refinement> refinements = {}) {
+  const auto message = [&](double gap, const Contact& contact, std::vector<Refinement> refinements = {},
+                           std::vector<NodeTie> ties = {}) {
     TwoBodies bodies(box({1.0, 1.0, 0.5}, {2, 2, 2}),
                      moved(box({1.0, 1.0, 0.5}, {3, 3, 2}), {0.0, 0.0, 0.5 + gap}), law);
     bodies.sets["points"] = {0, 5};
     bodies.description.forces.of<Contact>() = {contact};
     bodies.description.refinements = std::move(refinements);
+    bodies.description.element_sets = {
+        {"below", false, {std::nullopt, std::nullopt, Interval{0.0, 0.5}}, {}}};
+    bodies.description.ties = std::move(ties);
     try {
       bodies.scene();
     } catch (const InputError& error) {
@@ -380,6 +384,9 @@ TEST(SurfacePair, names_what_is_wrong) {
   const std::string hanging = message(0.01, pair_of("lower", "upper", kinematic), corner);
   EXPECT_NE(hanging.find("follows others, by a tie or on a refined mesh"), std::string::npos) << hanging;
   EXPECT_EQ(message(0.01, pair_of("lower", "upper", Contact::Method::penalty), corner), "");
+  const std::string tied =
+      message(0.0, pair_of("under", "over", Contact::Method::penalty), {}, {{"over", "below"}});
+  EXPECT_NE(tied.find("follow the other surface by a [[tie]]"), std::string::npos) << tied;
   EXPECT_NE(message(0.0, pair_of("under", "points", kinematic))
                 .find("contact.other = 'points' has no boundary face"),
             std::string::npos);

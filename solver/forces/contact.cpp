@@ -16,6 +16,24 @@ std::optional<BrokenRule> Contact::broken_rule() const {
   return broken_rule_of_name(label);
 }
 
+namespace {
+
+/// Whether all nodes of a surface are tied to nodes of another, which it cannot leave.
+bool is_tied_to(const Ties& ties, const std::vector<Quadrilateral>& surface,
+                const std::vector<Quadrilateral>& other) {
+  auto followed = nodes_of(other);
+  std::ranges::sort(followed);
+  const auto is_followed = [&](const Tie::Share& share) {
+    return std::ranges::binary_search(followed, share.node);
+  };
+  return std::ranges::all_of(nodes_of(surface), [&](int node) {
+    const Tie* tie = tie_of(ties, node);
+    return tie != nullptr && std::ranges::all_of(tie->mean_of, is_followed);
+  });
+}
+
+}  // namespace
+
 void Contact::resolve(ForceResolver& resolver) const {
   require_own_name(resolver, name, label);
   const auto refuse_at = [&](int node, const std::string& what, const std::string& allowed) {
@@ -36,9 +54,14 @@ void Contact::resolve(ForceResolver& resolver) const {
                 "surfaces without common nodes, or one set without `other`, which may touch itself");
     }
   }
-  if (method == Method::kinematic && resolver.in_motion && !resolver.tied.empty()) {
+  for (std::size_t s = 0; s < surfaces.size() && surfaces.size() > 1; ++s) {
+    if (!is_tied_to(resolver.ties, surfaces[s], surfaces[1 - s])) continue;
+    refuse_at(surfaces[s].front()[0], "and all others of its surface follow the other surface by a [[tie]]",
+              "a tie or a contact between two surfaces");
+  }
+  if (method == Method::kinematic && resolver.in_motion) {
     for (const int node : nodes_of(all)) {
-      if (!resolver.tied[at(node)]) continue;
+      if (!is_tied(resolver.ties, node)) continue;
       refuse_at(node, "follows others, by a tie or on a refined mesh, which the kinematic method cannot move",
                 "method = 'penalty', or sets without such nodes");
     }

@@ -39,8 +39,10 @@ struct Contact {
         Parameter{&C::other, "other", "-", Range::any(),
                   "node set of the second surface; without it, the first may touch itself", false},
         Parameter{&C::friction, "friction", "-", Range::at_least(0.0), "Coulomb's coefficient", false},
-        Parameter{&C::curve, "curve", "-", Range::any(),
-                  "they multiply the friction and must not be negative; without them, it is constant", false},
+        Parameter{
+            &C::curve, "curve", "-", Range::any(),
+            "its factors multiply the friction and must not be negative; without a curve, it is constant",
+            false},
         Parameter{&C::penalty, "penalty", "-", Range::positive(),
                   "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of "
                   "the elements at both surfaces; 30 times that in static equilibrium",

@@ -32,7 +32,7 @@ struct DeadForce {
         Parameter{&F::total, "total", "N", Range::any(), "total force", false},
         Parameter{&F::moment, "moment", "N m", Range::any(), "moment about the centroid of the faces", false},
         Parameter{&F::curve, "curve", "-", Range::any(),
-                  "they multiply the load, in place of the loading curve of the case", false},
+                  "its factors multiply the load, in place of the loading curve of the case", false},
         Parameter{&F::on, "on", "-", Range::any(),
                   "the boundary faces within the set, or its nodes, which share the total equally", false}};
   }

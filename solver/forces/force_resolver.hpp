@@ -5,6 +5,7 @@
 
 #include "forces/dead_loads.hpp"
 #include "forces/load_curve.hpp"
+#include "mesh/ties.hpp"
 
 namespace sandglass {
 
@@ -24,7 +25,7 @@ struct ForceResolver {
   std::vector<double> attached = {};  ///< share of `masses` that is not of elements; empty if there is none
   std::span<const Hexahedron> cells = {};
   std::vector<double> young_moduli = {};  ///< of elements, of the undeformed material, Pa
-  std::vector<bool> tied = {};            ///< whether a node follows others; empty: none
+  Ties ties = {};                         ///< of nodes to nodes that are not tied
   std::vector<bool> held = {};            ///< whether all components of a node are imposed; empty: none
   bool in_motion = true;                  ///< else in static equilibrium
 

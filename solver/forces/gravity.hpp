@@ -16,9 +16,10 @@ struct Gravity {
 
   static constexpr auto parameters() {
     using G = Gravity;
-    return std::tuple{Parameter{&G::value, "value", "m/s^2", Range::any(), "acceleration"},
-                      Parameter{&G::curve, "curve", "-", Range::any(),
-                                "they multiply the load, in place of the loading curve of the case", false}};
+    return std::tuple{
+        Parameter{&G::value, "value", "m/s^2", Range::any(), "acceleration"},
+        Parameter{&G::curve, "curve", "-", Range::any(),
+                  "its factors multiply the load, in place of the loading curve of the case", false}};
   }
 
   void resolve(ForceResolver& resolver) const;

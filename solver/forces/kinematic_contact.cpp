@@ -36,7 +36,6 @@ class KinematicContact final : public ObstacleContact {
         return;
       }
       const bool first = position[3] == 0.0;
-      if (first) last = row_of(sum({}, 0.5, motion));  // its force acts for half a step
       const Gap gap = compute_gap();
       if (passes(x, gap, motion)) memory.note_passed(node);
       if (gap.distance < 0.0) {
@@ -45,6 +44,7 @@ class KinematicContact final : public ObstacleContact {
         const Row<double>& w = nodes.inverse_masses[node];
         const Vector change = correction(gap, direction(gap, start), motion, w);
         motion = sum(motion, 1.0, change);
+        if (first) last = row_of(sum({}, -0.5, change));  // as in kinematic_pair.cpp
         Vector force{};
         for (std::size_t i = 0; i < 3; ++i) {
           if (!(w[i] > 0.0)) continue;

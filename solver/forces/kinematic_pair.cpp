@@ -254,8 +254,9 @@ class KinematicPair final : public SurfacePair {
         const Row<double>&moved = rows[2 * n + 1], &motion = nodes.increment[node],
               &w = nodes.inverse_masses[node];
         for (std::size_t i = 0; i < 3; ++i) {
-          // The force of the first step acts for half of it.
-          if (of_pair[has_moved] == 0.0) last[i] = 0.5 * (motion[i] - moved[i]);
+          // The first force acts for half a step: on a node with velocity v that it changes by d, it works
+          // m d (v + d / 2).
+          if (of_pair[has_moved] == 0.0) last[i] = -0.5 * moved[i];
           if (w[i] > 0.0 && moved[i] != 0.0) {
             const double force = moved[i] / (w[i] * nodes.gain);
             if (s == 0 && surfaces_.size() > 1) memory.pushes[i] += force;

@@ -18,7 +18,7 @@ struct ObstacleMove {
     using M = ObstacleMove;
     return std::tuple{
         Parameter{&M::displacement, "displacement", "m", Range::any(), "how far it moves"},
-        Parameter{&M::curve, "curve", "-", Range::any(), "they multiply this displacement", false}};
+        Parameter{&M::curve, "curve", "-", Range::any(), "its factors multiply this displacement", false}};
   }
 };
 
@@ -86,7 +86,7 @@ struct Obstacle {
                   false},
         Parameter{&O::displacement, "displacement", "m", Range::any(), "how far it moves", false},
         Parameter{&O::curve, "curve", "-", Range::any(),
-                  "they multiply the displacement, in place of the loading curve of the case", false},
+                  "its factors multiply the displacement, in place of the loading curve of the case", false},
         Parameter{
             &O::moves, "move", "-", Range::any(),
             "[[obstacle.move]], several times: further displacements that add to it, each with displacement "

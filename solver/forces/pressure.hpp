@@ -19,10 +19,11 @@ struct Pressure {
 
   static constexpr auto parameters() {
     using P = Pressure;
-    return std::tuple{Parameter{&P::set, "set", "-", Range::any(), "node set with the loaded faces"},
-                      Parameter{&P::value, "value", "Pa", Range::any(), "pressure"},
-                      Parameter{&P::curve, "curve", "-", Range::any(),
-                                "they multiply the load, in place of the loading curve of the case", false}};
+    return std::tuple{
+        Parameter{&P::set, "set", "-", Range::any(), "node set with the loaded faces"},
+        Parameter{&P::value, "value", "Pa", Range::any(), "pressure"},
+        Parameter{&P::curve, "curve", "-", Range::any(),
+                  "its factors multiply the load, in place of the loading curve of the case", false}};
   }
 
   void resolve(ForceResolver& resolver) const;

@@ -171,7 +171,7 @@ MeshWithSets read_mesh_of(const Case& description, const MeshFile& file) {
 }
 
 /// Throws InputError for bodies that overlap, unless a [[tie]] joins bodies that do.
-void require_apart(const Case& description, const Mesh& mesh) {
+void require_bodies_apart(const Case& description, const Mesh& mesh) {
   if (!description.ties.empty()) return;
   std::vector<bool> on_boundary = nodes_of(boundary_faces(mesh.cells), mesh.points.size());
   std::vector<int> nodes;
@@ -261,7 +261,7 @@ CaseOnMesh with_mesh(Case description) {
   }
   if (const auto* bodies = std::get_if<std::vector<PlacedBody>>(&description.mesh)) {
     auto [mesh, sets, element_sets] = build(*bodies);
-    require_apart(description, mesh);
+    require_bodies_apart(description, mesh);
     return {std::move(description), std::move(mesh), std::move(sets), std::move(element_sets)};
   }
   Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));

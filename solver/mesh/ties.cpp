@@ -9,14 +9,10 @@
 
 namespace sandglass {
 
-namespace {
-
 const Tie* tie_of(const Ties& ties, int node) {
   const auto found = std::ranges::lower_bound(ties, node, {}, &Tie::node);
   return found != ties.end() && found->node == node ? &*found : nullptr;
 }
-
-}  // namespace
 
 bool is_tied(const Ties& ties, int node) {
   return tie_of(ties, node) != nullptr;

@@ -20,6 +20,9 @@ struct Tie {
 /// Ties of different nodes, sorted by node.
 using Ties = std::vector<Tie>;
 
+/// The tie of a node; null if there is none.
+const Tie* tie_of(const Ties& ties, int node);
+
 /// Whether a node is tied.
 bool is_tied(const Ties& ties, int node);
 

@@ -135,13 +135,6 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
   }
 }
 
-/// Whether each node follows others.
-std::vector<bool> tied_nodes(const Scene& scene) {
-  std::vector<bool> tied(scene.mesh.points.size(), false);
-  for (const Tie& tie : scene.ties) tied[at(tie.node)] = true;
-  return tied;
-}
-
 /// Whether all components of each node are held or driven.
 std::vector<bool> held_nodes(const Scene& scene) {
   std::vector<int> imposed(scene.mesh.points.size(), 0);
@@ -161,7 +154,7 @@ void make_forces(const Case& description, Scene& scene, std::vector<double>& mas
                          .masses = masses,
                          .cells = scene.mesh.cells,
                          .young_moduli = young_moduli(scene.mesh, scene.materials),
-                         .tied = tied_nodes(scene),
+                         .ties = scene.ties,
                          .held = held_nodes(scene),
                          .in_motion = !description.quasi_static};
   description.forces.for_each([&](const auto& force) { force.resolve(resolver); });

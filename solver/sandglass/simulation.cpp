@@ -183,7 +183,7 @@ class Simulation<Real>::Parts {
     }
     try {
       if (!healthy) require_healthy(leapfrog_.body(), leapfrog_.step());
-      require_not_passed(body().touch(), scene().mesh.points, fmt::format("step {}", leapfrog_.step()));
+      require_not_passed(body().touch(), scene().mesh.points, "step", static_cast<double>(leapfrog_.step()));
       if (adaption_.active() && adaption_schedule_.due()) {
         const bool rose = adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0;
         if (rose) leapfrog_.body().evaluate_forces();

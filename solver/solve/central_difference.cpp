@@ -366,7 +366,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
       ++motion.repeated;
     } else if (due) {
       if (!healthy) require_healthy(body, scheme.step());
-      require_not_passed(touch, model.scene().mesh.points, fmt::format("step {}", scheme.step()));
+      require_not_passed(touch, model.scene().mesh.points, "step", static_cast<double>(scheme.step()));
       report();
       if (check_due) {  // the number of frames does not change the motion
         if (adaption.active() && adaption_schedule.due())

@@ -74,15 +74,15 @@ void require_healthy(const Body<Real>& body, long step) {
   require_healthy(jacobians, step);
 }
 
-void require_not_passed(const Touch& touch, const NodalField& points, const std::string& when) {
+void require_not_passed(const Touch& touch, const NodalField& points, std::string_view moment, double value) {
   if (touch.passed < 0) return;
   const Vector& X = points[at(touch.passed)];
   throw ComputationError(fmt::format(
-      "{}: contact '{}': node {}, undeformed at ({:.6g}, {:.6g}, {:.6g}) m, went deeper than "
+      "{} {:.9g}: contact '{}': node {}, undeformed at ({:.6g}, {:.6g}, {:.6g}) m, went deeper than "
       "the contact can push back from, and may have passed through\n"
       "remedy: press less or more slowly, take smaller steps (step_fraction, in static equilibrium levels), "
       "and by a penalty a larger one",
-      when, touch.name, touch.passed, X[0], X[1], X[2]));
+      moment, value, touch.name, touch.passed, X[0], X[1], X[2]));
 }
 
 void require_static_contact(const Scene& scene) {
@@ -100,11 +100,10 @@ void require_static_contact(const Scene& scene) {
   };
   if (remember_path(scene.forces) && scene.settings.relaxation.levels == 0 &&
       std::ranges::any_of(scene.curves, bends)) {
-    throw InputError(
-        fmt::format("{}: [relaxation] levels is needed: friction in static equilibrium follows the load, and "
-                    "a load or the "
-                    "friction has a curve; allowed: enough equal levels to follow it, such as levels = 20",
-                    file));
+    throw InputError(fmt::format(
+        "{}: [relaxation] levels is needed: friction in static equilibrium follows the load, and "
+        "a load or the friction has a curve; allowed: enough equal levels to follow it, such as levels = 20",
+        file));
   }
   if (!scene.coarser.empty() && movable_of(scene.forces).size() < contacts.size()) {
     throw InputError(

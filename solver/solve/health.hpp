@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "solve/body.hpp"
 
@@ -25,8 +26,9 @@ void require_healthy(std::span<const double> jacobians, long step);
 template <class Real>
 void require_healthy(const Body<Real>& body, long step);
 
-/// Throws ComputationError, which says when, if a node may have passed through a surface.
-void require_not_passed(const Touch& touch, const NodalField& points, const std::string& when);
+/// Throws ComputationError if a node may have passed through a surface; the error names the moment and its
+/// value, as in "step 100" or "load 0.5".
+void require_not_passed(const Touch& touch, const NodalField& points, std::string_view moment, double value);
 
 /// Throws InputError if a contact is supported in motions only, or if friction would follow a curve in levels
 /// that the user has not chosen.

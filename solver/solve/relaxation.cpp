@@ -276,8 +276,7 @@ class Search {
     result_.converged = load_levels_.full() && !result_.stagnated;
     ended_ = load_levels_.full() || equilibrium_.evaluations() >= most_evaluations_;
     body().end_level();
-    require_not_passed(body().touch(), model_.scene().mesh.points,
-                       fmt::format("load {:.6g}", load_levels_.load()));
+    require_not_passed(body().touch(), model_.scene().mesh.points, "load", load_levels_.load());
     add_work();
     report();
     if (ended_) return;
