@@ -6,10 +6,7 @@ namespace {
 
 double dot(const float* x, const float* y, const Blocks& blocks) {
   return blocks.sum([=](std::size_t first, std::size_t last) {
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (std::size_t k = first; k < last; ++k) sum += static_cast<double>(x[k]) * static_cast<double>(y[k]);
-    return sum;
+    return sum_of_products<double>(x + first, y + first, last - first);
   });
 }
 

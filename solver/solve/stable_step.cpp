@@ -19,9 +19,26 @@ double step_of(double square, const LoadRates& rates) {
   return a == 0.0 ? 2.0 / std::sqrt(sum) : (std::sqrt(a * a + 4.0 * sum) - a) / sum;
 }
 
+double square_of(const Model& model, std::size_t element, double stiffness) {
+  return stiffness / share_of_node(model.element_masses()[element]);
+}
+
 double step_of(const Model& model, std::size_t element, double stiffness) {
-  const double square = stiffness / share_of_node(model.element_masses()[element]);
-  return step_of(square, model.load_rates().empty() ? LoadRates{} : model.load_rates()[element]);
+  return step_of(square_of(model, element, stiffness),
+                 model.load_rates().empty() ? LoadRates{} : model.load_rates()[element]);
+}
+
+/// Of bodies without loads that have rates: that of the largest square, which costs no roots.
+StableStep step_without_rates(const Model& model, std::span<const double> bounds) {
+  double most = 0.0;
+  int element = -1;
+  for (std::size_t e = 0; e < bounds.size(); ++e) {
+    const double square = square_of(model, e, bounds[e]);
+    if (square <= most) continue;
+    most = square;
+    element = static_cast<int>(e);
+  }
+  return {step_of(most, LoadRates{}), element};
 }
 
 }  // namespace
@@ -45,6 +62,7 @@ StableStep stable_step(const Model& model, const NodalField& u) {
 }
 
 StableStep stable_step(const Model& model, std::span<const double> bounds) {
+  if (model.load_rates().empty()) return step_without_rates(model, bounds);
   StableStep smallest{std::numeric_limits<double>::infinity(), -1};
   for (std::size_t e = 0; e < bounds.size(); ++e) {
     const double step = step_of(model, e, bounds[e]);
