@@ -122,13 +122,26 @@ TEST_F(LimitTest, unfinished_run_proves_no_accuracy) {
 
 TEST(Verdict, json_has_every_figure_and_null_for_what_is_not_there) {
   const std::string text = to_json({{"revision", "abc"}}, {verdict("tl-none", {}, false, 0.5)}, {});
-  for (const char* part :
-       {"\"revision\": \"abc\"", "\"case\": \"test\"", "\"method\": \"tl-none\"", "\"kappa\": null",
-        "\"precision\": \"double\"", "\"status\": \"ok\"", "\"max_relative_error\": 0.5", "\"truth\": null",
-        "\"profile_relative_error\": 0.25", "\"rms_relative_error\": 0.125", "\"residual\"",
-        "\"hourglass_energy_ratio\"", "\"ns_per_element_step\": null", "\"mean_step_seconds\": null",
-        "\"seconds_per_simulated_second\": null", "\"equilibrium_seconds\": null", "\"evaluations\": null",
-        "\"motion_seconds\": null", "\"steps\": null"}) {
+  for (const char* part : {"\"revision\": \"abc\"",
+                           "\"case\": \"test\"",
+                           "\"method\": \"tl-none\"",
+                           "\"kappa\": null",
+                           "\"precision\": \"double\"",
+                           "\"status\": \"ok\"",
+                           "\"max_relative_error\": 0.5",
+                           "\"truth\": null",
+                           "\"profile_relative_error\": 0.25",
+                           "\"rms_relative_error\": 0.125",
+                           "\"residual\"",
+                           "\"hourglass_energy_ratio\"",
+                           "\"load_in_steps\": null",
+                           "\"ns_per_element_step\": null",
+                           "\"mean_step_seconds\": null",
+                           "\"seconds_per_simulated_second\": null",
+                           "\"equilibrium_seconds\": null",
+                           "\"evaluations\": null",
+                           "\"motion_seconds\": null",
+                           "\"steps\": null"}) {
     EXPECT_TRUE(contains(text, part)) << part;
   }
 }

@@ -71,6 +71,24 @@ def test_verify_in_float_gives_figures_and_checks_no_limit(block):
     assert same["status"] == "ok" and 1e-9 < same["golden"]["max_relative_error"] < 6e-4
 
 
+PLANE = 'shape = "plane"\npoint = [0, 0, 9]\nnormal = [0, 0, -1]\n'
+LOADS = {
+    None: "[[gravity]]\nvalue = [0, 0, -1.0]\n",
+    "support": '[[support]]\nset = "side"\nstiffness = 100.0\n',
+    "obstacle": '[[obstacle]]\nname = "plane"\nset = "side"\n' + PLANE,
+}
+
+
+@pytest.mark.parametrize("load", LOADS)
+def test_loads_that_steps_compute_are_named(block, load):
+    """Their work is part of a step's time, but of no method's operations."""
+    text = BLOCK.replace("[sets]", "[sets]\nside = { x = [0.1, 0.1] }")
+    text = text.replace("[comparison]", LOADS[load] + "[comparison]")
+    block.write_text(text + LIMIT.format(method="tl-none", below=1.0))
+    records = documented("verify --no-costs", block, code=1)[1]["records"]
+    assert {record["load_in_steps"] for record in records} == {load}
+
+
 def test_broken_limit_ends_with_1(block):
     write_golden(block)
     block.write_text(BLOCK + LIMIT.format(method="tl-none", below=1e-30))

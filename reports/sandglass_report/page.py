@@ -55,7 +55,8 @@ class Inputs:
         """The points of the main chart. Raises InputError if one cannot be true."""
         own = self.verdicts.provenance
         points = make_points(self.verdicts.runs, self.elements, self.measured, own)
-        loaded = frozenset(s.name for s in self.subjects if s.surface_loads)
+        runs = (run for subject in self.subjects for run in subject.runs)
+        loaded = frozenset(run.case for run in runs if run.load_in_steps)
         require_plausible(points, self.measured, own, loaded)
         return tuple(points)
 

@@ -39,7 +39,7 @@ class Marks:
 
     points: of the main chart. steps: of bench, and candidates: of choose, if of the same origin.
     table: method -> operations of an element and step in the flop table. loaded: cases with
-    pressures or supports, whose time is part of a step and in no count of a method.
+    pressures, supports or contact, whose time is part of a step and in no count of a method.
     """
 
     points: tuple
@@ -72,7 +72,7 @@ class Marks:
         eight = self.table.get(EIGHT_POINTS, least) if point.method == ADAPTIVE else least
         return least, max(least, eight)
 
-    def without_surface_loads(self):
+    def with_dead_loads_only(self):
         """by_case() of the cases whose steps are the work of the methods alone."""
         return {case: of for case, of in self.by_case().items() if case not in self.loaded}
 
@@ -127,7 +127,7 @@ def bench_agrees(marks):
 
 def updated_form_costs_more(marks):
     """A step of ul-perturbation takes at least 1.5 times as long as one of tl-perturbation"""
-    for methods in marks.without_surface_loads().values():
+    for methods in marks.with_dead_loads_only().values():
         total, updated = methods.get(paper.METHOD), methods.get(paper.UPDATED)
         if total and updated and not updated.ns >= UPDATED_AT_LEAST * total.ns:
             yield f"{updated.name}: {updated.ns:.4g} ns, {total.method} {total.ns:.4g} ns"
@@ -135,7 +135,7 @@ def updated_form_costs_more(marks):
 
 def times_follow_operations(marks):
     """Times per step over that of tl-perturbation are those of operations within a factor of two"""
-    for methods in marks.without_surface_loads().values():
+    for methods in marks.with_dead_loads_only().values():
         counted = [p for p in methods.values() if p.method in marks.table]
         unit = next((p for p in counted if p.method == paper.METHOD), None)
         for p in counted if unit else ():

@@ -50,9 +50,6 @@ class Subject:
     sets: dict = field(default_factory=dict)
     golden: Reference | None = None
     truth: Reference | None = None
-    surface_loads: bool = (
-        False  # pressures, supports, obstacles: their operations belong to no method
-    )
     motion: MotionGolden | None = None  # of a case in motion, which has no single golden field
     displacements: dict = field(default_factory=dict)  # (method, kappa or None) -> (n, 3), m
     hourglass: dict = field(default_factory=dict)  # the same -> energy density (m,), J/m^3
@@ -147,7 +144,6 @@ def _read_subject(verdicts, name, case_files, references, results):
         displacements=displacements,
         hourglass=hourglass,
         hashes=hashes,
-        surface_loads=any(tables.get(key) for key in ("pressure", "support", "obstacle")),
         motion=motion,
         **mesh,
         **stored_answers,

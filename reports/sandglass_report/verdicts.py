@@ -23,7 +23,8 @@ class Run:
     finding: str | None  # how it failed, or "good"; None without a golden to compare with
     golden: Accuracy | None
     truth: Accuracy | None
-    operations: int  # per element and step
+    operations: int  # per element and step, without loads
+    load_in_steps: str | None  # table of the first load that steps compute, such as "contact"
     stable_step: float  # s, undeformed
     residual: float
     hourglass_energy_ratio: float  # of the strain energy

@@ -154,8 +154,8 @@ def test_operations_saved_on_equal_elements_are_not_held_against_the_others():
     assert broken(sound(tl_perturbation={"operations": 343}))[0] == set()
 
 
-def test_surface_loads_are_the_work_of_no_method():
-    """On a beam under pressure steps take 48 ns more; without surface loads that is a fault."""
+def test_loads_in_steps_are_the_work_of_no_method():
+    """On a beam under pressure steps take 48 ns more; with dead loads alone that is a fault."""
     slow = {m.replace("-", "_"): timed(ns + 48.0, STEP) for m, (ns, _) in METHODS.items()}
     points = sound(**slow)
     assert broken(points)[0] >= {times_follow_operations}

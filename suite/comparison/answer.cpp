@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "comparison/reference_file.hpp"
+#include "forces/contact_force.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
 
@@ -15,11 +16,12 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-/// Keeps the displacements at some times and the last energies, and the reactions at all checks; asks another
-/// observer whether to continue.
+/// Keeps the displacements at some times and the last energies, and of a scene with contact the reactions at
+/// all checks; asks another observer whether to continue.
 class Sampler final : public Observer {
  public:
-  Sampler(std::vector<double> times, Observer& other) : times_(std::move(times)), other_(other) {}
+  Sampler(std::vector<double> times, const Scene& scene, Observer& other)
+      : times_(std::move(times)), has_contact_(!contacts_of(scene.forces).empty()), other_(other) {}
 
   double next_sample() const override {
     return u.size() < times_.size() ? times_[u.size()] : Observer::next_sample();
@@ -27,7 +29,7 @@ class Sampler final : public Observer {
   void sample(const NodalField& now) override { u.push_back(now); }
   void history(const HistoryRow& row) override {
     energies = {row.strain, row.hourglass};
-    checks.push_back({row.time, row.reactions});
+    if (has_contact_) checks.push_back({row.time, row.reactions});
   }
   void at_load(double factor) override { other_.at_load(factor); }
   bool proceed(long step, double share, double residual) override {
@@ -40,11 +42,12 @@ class Sampler final : public Observer {
 
  private:
   std::vector<double> times_;
+  bool has_contact_;
   Observer& other_;
 };
 
 Answer moving_answer(const Model& model, Observer& observer) {
-  Sampler sampler(answer_times(model.scene().settings), observer);
+  Sampler sampler(answer_times(model.scene().settings), model.scene(), observer);
   const Motion motion = integrate(model, sampler);
   return {.u = std::move(sampler.u),
           .energies = sampler.energies,
@@ -54,7 +57,7 @@ Answer moving_answer(const Model& model, Observer& observer) {
 }
 
 Answer resting_answer(const Model& model, Observer& observer) {
-  Sampler sampler({}, observer);
+  Sampler sampler({}, model.scene(), observer);
   Relaxation relaxation = relax(model, sampler);
   Answer answer{.energies = relaxation.energies,
                 .checks = std::move(sampler.checks),

@@ -13,14 +13,14 @@ namespace sandglass {
 
 /// The outcome of a static or dynamic computation.
 struct Answer {
-  Displacements u;          ///< m, at the answer's times; empty if the computation broke down
-  StrainEnergies energies;  ///< J, at the last of them
-  std::vector<ReactionsAt> checks = {};
-  std::optional<Finding> failure = {};  ///< how it broke down, or that it is not in equilibrium
-  bool refused = false;                 ///< the method does not support this case
-  std::string status = "ok";            ///< or the reason why not
-  long steps = 0;                       ///< of a motion; of a static answer, evaluations of its search
-  double residual = 0.0;                ///< of a static answer; see Relaxation
+  Displacements u;                       ///< m, at the answer's times; empty if the computation broke down
+  StrainEnergies energies;               ///< J, at the last of them
+  std::vector<ReactionsAt> checks = {};  ///< of a scene with contact
+  std::optional<Finding> failure = {};   ///< how it broke down, or that it is not in equilibrium
+  bool refused = false;                  ///< the method does not support this case
+  std::string status = "ok";             ///< or the reason why not
+  long steps = 0;                        ///< of a motion; of a static answer, evaluations of its search
+  double residual = 0.0;                 ///< of a static answer; see Relaxation
   double seconds = 0.0;  ///< wall time from the model to the answer; of a motion, wall time of its steps
 };
 

@@ -43,6 +43,7 @@ bool concerns(const Expectation& expected, const Verdict& verdict) {
 /// ComputationError.
 Answer fill_answer(const Scene& scene, const MethodChoice& choice, Verdict& verdict) {
   const Model model(scene, choice);
+  if (const BodyForce* load = first_not_dead(scene.forces)) verdict.load_in_steps = load->traits().name;
   verdict.stable_step = stable_step(model, NodalField(scene.mesh.points.size())).step;
   Observer silent;
   Answer answer = compute_answer(model, silent);

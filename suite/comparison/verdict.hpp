@@ -58,9 +58,10 @@ struct Verdict {
   std::optional<Accuracy> mean_dilatation;  ///< without a golden: against tl-mean-dilatation, computed here
   std::optional<Finding>
       finding;  ///< at the worst time; none without a golden, or if the method does not support the case
-  std::optional<Symptoms> symptoms;  ///< the basis of the finding; none for a computation that broke down
-  double stable_step = 0.0;          ///< s, of the undeformed body; 0 if unknown
-  long operations = 0;               ///< per element and step
+  std::optional<Symptoms> symptoms;     ///< the basis of the finding; none for a computation that broke down
+  double stable_step = 0.0;             ///< s, of the undeformed body; 0 if unknown
+  long operations = 0;                  ///< per element and step, without loads
+  std::string_view load_in_steps = {};  ///< table of the first load that steps compute; empty if none does
   double residual = 0.0;
   double hourglass_energy_ratio = 0.0;          ///< hourglass over strain energy
   std::optional<SearchCost> search = {};        ///< of a quasi-static case

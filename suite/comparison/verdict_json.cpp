@@ -61,6 +61,7 @@ Json to_record(const Verdict& verdict) {
               {"golden", to_record(verdict.golden)},
               {"truth", to_record(verdict.truth)},
               {"operations", verdict.operations},
+              {"load_in_steps", verdict.load_in_steps.empty() ? Json(nullptr) : Json(verdict.load_in_steps)},
               {"stable_step", verdict.stable_step},
               {"residual", verdict.residual},
               {"hourglass_energy_ratio", verdict.hourglass_energy_ratio}};
