@@ -199,9 +199,11 @@ SMALL_PROJECT = {
         {"name": "developer", "generator": "Ninja"}, {"name": "quick", "generator": "Ninja"}]}""",
     "CMakeLists.txt": """cmake_minimum_required(VERSION 3.25)
 project(small LANGUAGES CXX)
-function(add_tests library headers name)
-  add_executable(${name} ${name}.cpp)
-  target_link_libraries(${name} ${library})
+function(add_tests library headers)
+  foreach(name ${ARGN})
+    add_executable(${name} ${name}.cpp)
+    target_link_libraries(${name} ${library})
+  endforeach()
 endfunction()
 add_subdirectory(solver)
 add_subdirectory(verification)
@@ -209,7 +211,8 @@ add_subdirectory(verification)
     "solver/CMakeLists.txt": "add_library(a a.cpp)\n",
     "solver/a.hpp": "inline int two() { return 2; }\n",
     "solver/a.cpp": '#include "a.hpp"\nint four() { return 2 * two(); }\n',
-    "verification/CMakeLists.txt": "add_tests(a a\n  small_test)\n",
+    "verification/CMakeLists.txt": "add_tests(a a\n  calm_test\n  small_test)\n",
+    "verification/calm_test.cpp": "int main() {}\n",
     "verification/small_test.cpp": r"""#include <cstdio>
 int four();
 int main() {
@@ -229,7 +232,9 @@ def test_mutants_are_built_and_leave_nothing_behind(tmp_path, monkeypatch, file)
     text = SMALL_PROJECT[file]
     mistakes = {"killed": ("return ", "return 1 + "), "broken": ("int", "in"), None: ("{ ", "{  ")}
     for_sources = file.endswith(".cpp")
-    with worker.Worker("HEAD", threading.Event(), 1, ["small_test"], for_sources) as copy:
+    with worker.Worker(
+        "HEAD", threading.Event(), 1, ["calm_test", "small_test"], for_sources
+    ) as copy:
         for kind, (right, wrong) in [*mistakes.items(), *mistakes.items()]:
             line = text.splitlines()[-1]
             mistake = Mistake(

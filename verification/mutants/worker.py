@@ -176,9 +176,9 @@ class Worker:
         sources = PYTHON_FOLDERS.get(program.name, (*COMPILED, "verification"))
         return any(name.partition("/")[0] in sources for name in patch.files)
 
-    def _make(self, program):
-        target = "sandglass_cli" if program.is_python else program.name
-        command = ["ninja", "-C", self.build, f"-j{self._jobs}", target]
+    def _make(self, *programs):
+        targets = {"sandglass_cli" if one.is_python else one.name: None for one in programs}
+        command = ["ninja", "-C", self.build, f"-j{self._jobs}", *targets]
         return self._run(command, check=False)
 
     def _passes(self, failure):
