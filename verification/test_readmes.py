@@ -340,3 +340,18 @@ def test_every_test_is_in_the_table_of_the_suite():
     tests = [*folder.glob("*_test.cpp"), *folder.glob("test_*.py")]
     text = DOCUMENTS["verification/README.md"]
     assert [test.name for test in tests if f"`{test.name}`" not in text] == []
+
+
+def test_blocks_of_toml_are_toml():
+    """A text that was filled anew once joined their lines."""
+    blocks = [
+        (name, block)
+        for name, text in DOCUMENTS.items()
+        for block in re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    ]
+    assert len(blocks) > 5
+    for name, block in blocks:
+        try:
+            tomllib.loads(block)
+        except tomllib.TOMLDecodeError as error:
+            pytest.fail(f"{name}: {error}\n{block}")
