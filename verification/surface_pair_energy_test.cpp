@@ -160,10 +160,9 @@ std::vector<Quadrilateral> skin_of(const Scene& scene, const std::vector<int>& n
 }
 
 /// At speeds up to .3 of waves, by both methods, with friction and without, none gains energy beyond .1 %
-/// (kinematic; .012 % here) or 1 % (penalty; .45 %): before, 1.5 % and 4.2 %, as the force of the first step
-/// was counted wrongly, and the closest point jumped at an edge. Of 2,000 scenes one gains more, 4.4 %: by a
-/// penalty that lets points sink by a fifth of an edge and pass around a rim. Momentum and its moment are
-/// kept to rounding. No body has its centre in the other.
+/// (kinematic) or 1 % (penalty). Of 2,000 scenes (SANDGLASS_SCENES) one gains more, 4.4 %, by a penalty that
+/// lets points sink by a fifth of an edge and pass around a rim. Momentum and its moment are kept to
+/// rounding. No body has its centre in the other.
 TEST(SurfacePair, collides_at_random) {
   const long scenes = from_environment("SANDGLASS_SCENES", 200);
   RandomGeometry random(48);

@@ -55,8 +55,7 @@ class Inputs:
         """The points of the main chart. Raises InputError if one cannot be true."""
         own = self.verdicts.provenance
         points = make_points(self.verdicts.runs, self.elements, self.measured, own)
-        runs = (run for subject in self.subjects for run in subject.runs)
-        loaded = frozenset(run.case for run in runs if run.load_in_steps)
+        loaded = frozenset(run.case for run in self.verdicts.runs if run.load_in_steps)
         require_plausible(points, self.measured, own, loaded)
         return tuple(points)
 

@@ -18,17 +18,14 @@ std::optional<BrokenRule> Contact::broken_rule() const {
 
 namespace {
 
-/// Whether all nodes of a surface are tied to nodes of another, which it cannot leave.
-bool is_tied_to(const Ties& ties, const std::vector<Quadrilateral>& surface,
-                const std::vector<Quadrilateral>& other) {
-  auto followed = nodes_of(other);
-  std::ranges::sort(followed);
-  const auto is_followed = [&](const Tie::Share& share) {
-    return std::ranges::binary_search(followed, share.node);
+/// Whether all nodes are tied to others, which are sorted.
+bool are_tied_to(const Ties& ties, const std::vector<int>& nodes, const std::vector<int>& others) {
+  const auto is_other = [&](const Tie::Share& share) {
+    return std::ranges::binary_search(others, share.node);
   };
-  return std::ranges::all_of(nodes_of(surface), [&](int node) {
+  return std::ranges::all_of(nodes, [&](int node) {
     const Tie* tie = tie_of(ties, node);
-    return tie != nullptr && std::ranges::all_of(tie->mean_of, is_followed);
+    return tie != nullptr && std::ranges::all_of(tie->mean_of, is_other);
   });
 }
 
@@ -53,11 +50,10 @@ void Contact::resolve(ForceResolver& resolver) const {
       refuse_at(common.front(), fmt::format("is on both surfaces, '{}' and '{}'", set, other),
                 "surfaces without common nodes, or one set without `other`, which may touch itself");
     }
-  }
-  for (std::size_t s = 0; s < surfaces.size() && surfaces.size() > 1; ++s) {
-    if (!is_tied_to(resolver.ties, surfaces[s], surfaces[1 - s])) continue;
-    refuse_at(surfaces[s].front()[0], "and all others of its surface follow the other surface by a [[tie]]",
-              "a tie or a contact between two surfaces");
+    if (are_tied_to(resolver.ties, first, second) || are_tied_to(resolver.ties, second, first)) {
+      refuse_at(first.front(), "and all others of one surface follow the other surface by a [[tie]]",
+                "a tie or a contact between two surfaces");
+    }
   }
   if (method == Method::kinematic && resolver.in_motion) {
     for (const int node : nodes_of(all)) {

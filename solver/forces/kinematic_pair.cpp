@@ -254,7 +254,7 @@ class KinematicPair final : public SurfacePair {
         const Row<double>&moved = rows[2 * n + 1], &motion = nodes.increment[node],
               &w = nodes.inverse_masses[node];
         for (std::size_t i = 0; i < 3; ++i) {
-          // The first force acts for half a step: on a node with velocity v that it changes by d, it works
+          // The first force acts for half a step. If it changes the velocity v of a node by d, its work is
           // m d (v + d / 2).
           if (of_pair[has_moved] == 0.0) last[i] = -0.5 * moved[i];
           if (w[i] > 0.0 && moved[i] != 0.0) {

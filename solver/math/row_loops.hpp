@@ -98,8 +98,8 @@ class Blocks {
   Range own_, local_;
 };
 
-/// The sum of the products of n numbers. A function of pointers, as GCC gathers, slowly, in a loop over what
-/// a lambda captures.
+/// The sum of the products of n numbers, added up as Sum. Where a lambda captures the pointers instead, GCC
+/// turns the loop into slow gather instructions.
 template <class Sum, class Real>
 Sum sum_of_products(const Real* x, const Real* y, std::size_t n) {
   Sum sum = 0;
