@@ -52,6 +52,13 @@ Vector normal_of(const std::array<Vector, 4>& x) {
   return cross(difference(x[2], x[0]), difference(x[3], x[1]));
 }
 
+/// Whether a face opposes the normal of a point: not the side of a body on which the point lies, which may
+/// lean towards it, but the faces beside a sharp edge, whose normals are mean values, do.
+bool opposes(const Vector& of_face, const Vector& of_point) {
+  constexpr double least_cosine = 0.3;
+  return dot(of_face, of_point) < -least_cosine * length(of_face) * length(of_point);
+}
+
 /// The k-th of the four triangles of a face.
 std::array<Vector, 3> triangle_of(const std::array<Vector, 4>& x, std::size_t k) {
   const Vector centre = sum(sum(sum(sum({}, 0.25, x[0]), 0.25, x[1]), 0.25, x[2]), 0.25, x[3]);
@@ -115,7 +122,8 @@ void MovingSurface::fit(Row<double>* rows) const {
   Row<double>* normals = rows + nodes_.size();
   std::fill(normals, normals + nodes_.size(), Row<double>{});
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const Vector normal = normal_of(corners_now(static_cast<int>(f), rows));
+    const Vector twice_area = normal_of(corners_now(static_cast<int>(f), rows));
+    const Vector normal = direction_of(twice_area, length(twice_area));
     for (const int node : faces_[f]) {
       for (std::size_t i = 0; i < 3; ++i) normals[node][i] += normal[i];
     }
@@ -139,7 +147,7 @@ SurfaceFoot MovingSurface::closest(const Vector& x, const Vector& normal, double
   SurfaceFoot closest{.square = reach * reach};
   tree_.search(x, rows + 2 * nodes_.size(), closest.square, [&](int face) {
     const auto corners = corners_now(face, rows);
-    if (dot(normal_of(corners), normal) >= 0.0 || std::ranges::binary_search(except, face)) return;
+    if (!opposes(normal_of(corners), normal) || std::ranges::binary_search(except, face)) return;
     const auto compare = [&](const std::array<Vector, 3>& triangle, const Vector& weights, std::size_t k) {
       const Vector there = point_of(triangle, weights), from = difference(x, there);
       const double square = dot(from, from);

@@ -72,7 +72,7 @@ class MovingSurface {
     return mean(nodes, weights, rows);
   }
 
-  /// The mean of the sums of normals of the faces around each node; not of length one.
+  /// The mean of the sums of unit normals of the faces around each node; not of length one.
   Vector normal(const Quadrilateral& nodes, const Row<double>& weights, const Row<double>* rows) const {
     return mean(nodes, weights, rows + nodes_.size());
   }
