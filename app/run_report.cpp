@@ -155,9 +155,6 @@ void print_method(const Model& model) {
 void HistoryReport::take(const HistoryRow& row) {
   if (!started_) first_ = last_ = row;
   started_ = true;
-  // Where contact moves nodes, the kinetic energy of a body near rest may be below zero; damping gives none
-  // back.
-  kinetic_time_ += 0.5 * std::max(last_.kinetic + row.kinetic, 0.0) * (row.time - last_.time);
   last_ = row;
   largest_hourglass_ = std::max(largest_hourglass_, row.hourglass);
   largest_strain_ = std::max(largest_strain_, row.strain);
@@ -171,13 +168,12 @@ double HistoryReport::hourglass_share(bool quasi_static) const {
   return strain > 0.0 ? hourglass / strain : 0.0;
 }
 
-double HistoryReport::unexplained_share(double damping) const {
+double HistoryReport::unexplained_share() const {
   const auto explained = [](const HistoryRow& row) {
-    return row.kinetic + row.strain + row.hourglass + row.contact + row.friction - row.external_work -
+    return row.kinetic + row.strain + row.hourglass + row.contact + row.friction + row.damping - row.external_work -
            row.adaption;
   };
-  const double damped = 2.0 * damping * kinetic_time_;  // the power of c m v is 2 c times the kinetic energy
-  return largest_ > 0.0 ? (explained(last_) - explained(first_) + damped) / largest_ : 0.0;
+  return largest_ > 0.0 ? (explained(last_) - explained(first_)) / largest_ : 0.0;
 }
 
 void print_static_ending(const Relaxation& found, Precision precision, double tolerance, bool went_on) {
@@ -237,7 +233,7 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
     if (row.adaption != 0.0) fmt::print(", added by changes of levels {:.3g}", row.adaption);
     const double damping = scene.settings.dynamics.damping;
     fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}",
-               100.0 * history.unexplained_share(damping), damping > 0.0 ? ", after damping" : "");
+               100.0 * history.unexplained_share(), damping > 0.0 ? ", after damping" : "");
   }
   if (row.friction != 0.0) fmt::print(", lost in contact {:.3g}", row.friction);
   fmt::print("\n");
@@ -269,7 +265,7 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
         method, golden_method);
   }
   if (settings.quasi_static) return;
-  const double damping = settings.dynamics.damping, unexplained = history.unexplained_share(damping);
+  const double damping = settings.dynamics.damping, unexplained = history.unexplained_share();
   const double much = damping > 0.0 ? much_unexplained_if_damped : much_unexplained;
   if (unexplained > much || (unexplained < -much && !dissipates(model))) {
     fmt::print(

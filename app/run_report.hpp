@@ -37,15 +37,13 @@ class HistoryReport {
   double largest_depth(bool quasi_static) const { return quasi_static ? last_.depth : largest_depth_; }
 
   /// The unexplained energy (J) at the end, negative if some is missing, over the largest energy or work.
-  /// `damping` is the mass damping, 1/s.
-  double unexplained_share(double damping) const;
+  double unexplained_share() const;
 
  private:
   bool started_ = false;
   HistoryRow first_{}, last_{};
   double largest_hourglass_ = 0.0, largest_strain_ = 0.0, largest_ = 0.0;
   double largest_depth_ = 0.0;  // m
-  double kinetic_time_ = 0.0;   // J s, the integral of the kinetic energy
 };
 
 /// Prints the results of a run: the largest displacement of u (m), the smallest volume ratio of an element,

@@ -150,6 +150,7 @@ class Answer : public NeverUnmade {
     add("contact_energy", &HistoryRow::contact);
     add("friction_loss", &HistoryRow::friction);
     add("depth", &HistoryRow::depth);
+    add("damping_loss", &HistoryRow::damping);
     return columns;
   }
 

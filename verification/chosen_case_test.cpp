@@ -150,7 +150,8 @@ TEST_F(MethodTableTest, keeps_every_set_that_a_table_names_on_coarser_meshes) {
   tables["force"] = "[[force]]\nset = \"lone\"\ntotal = [0.1, 0.0, 0.0]\n";
   tables["support"] = "[[support]]\nset = \"lone\"\nstiffness = 1e3\n";
   tables["obstacle"] =
-      "[[obstacle]]\nname = \"floor\"\nset = \"lone\"\nshape = \"plane\"\nnormal = [0.0, 0.0, 1.0]\n";
+      "[[obstacle]]\nname = \"floor\"\nset = \"lone\"\nshape = \"plane\"\npoint = [0, 0, 0]\nnormal = [0.0, "
+      "0.0, 1.0]\n";
   tables["contact"] = "[[contact]]\nname = \"self\"\nset = \"lone\"\n";
   for (const auto& [name, table] : tables) {
     // In the middle of the lower end; none of its nodes is a corner of an element that it is tied to.

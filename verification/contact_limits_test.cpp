@@ -183,7 +183,7 @@ TEST(ContactLimits, leaves_held_nodes_alone) {
   }
 }
 
-/// Friction that drives what slides is none.
+/// Friction that drives what slides is none, whether a table or a formula says so.
 TEST(ContactLimits, refuses_negative_friction) {
   const auto broken = [](double last) {
     const auto rule = Contact{.label = "pair", .curve = {{0.0, 1.0}, {1.0, last}}}.broken_rule();
@@ -191,6 +191,32 @@ TEST(ContactLimits, refuses_negative_friction) {
   };
   EXPECT_EQ(broken(0.0), "");
   EXPECT_EQ(broken(-0.1), "factors");
+  TwoBodies bodies(box({1.0, 1.0, 0.5}, {1, 1, 1}), moved(box({1.0, 1.0, 0.5}, {1, 1, 1}), {0.0, 0.0, 0.5}),
+                   NeoHookean{.young_modulus = 1e4});
+  Contact contact = pair_of("under", "over", Contact::Method::kinematic, 0.3);
+  contact.curve.formula = Formula("1 - 100 * t");
+  bodies.description.forces.of<Contact>() = {contact};
+  bodies.description.dynamics.duration = 0.1;
+  Observer silent;
+  const Scene scene = bodies.scene();
+  expect_in(message_of<InputError>([&] { integrate(Model(scene, {"tl-perturbation"}), silent); }),
+            "contact 'pair': the factor of the friction becomes -");
+}
+
+/// An obstacle whose place is forgotten would be at the origin.
+TEST(ContactLimits, places_no_obstacle_by_default) {
+  Obstacle tool{.label = "tool", .set = "top", .shape = Obstacle::Shape::capsule, .radius = 0.1};
+  const auto broken = [&] {
+    const auto rule = tool.broken_rule();
+    return rule ? rule->parameter : "";
+  };
+  EXPECT_EQ(broken(), "point");
+  tool.point = {};
+  EXPECT_EQ(broken(), "end");
+  tool.end = {0.0, 0.0, 1.0};
+  EXPECT_EQ(broken(), "");
+  tool.shape = Obstacle::Shape::sphere;
+  EXPECT_EQ(broken(), "end");
 }
 
 }  // namespace

@@ -310,6 +310,44 @@ damping = 15.0
   EXPECT_NEAR(last.reactions.at("rod")[0], -last.reactions.at("base")[0], 1e-3);
 }
 
+/// A cube slides into a groove of two planes, with friction. Both push the nodes of its lowest edge in the
+/// same step: what one takes, the other may give back, so that only their sum is lost. At rest nothing is
+/// lost, the velocities of frames are zero, and forces carry the weight. Counted one by one, they lost twice
+/// the largest energy while nothing moved.
+TEST(KinematicContact, rests_in_a_groove) {
+  const double a = 0.1, half = std::sqrt(0.5);
+  Column cube({a, a, a}, {4, 4, 4}, NeoHookean{.young_modulus = 2e4, .poisson_ratio = 0.3});
+  for (Vector& X : cube.mesh.points) X = {half * (X[0] - X[2]), X[1], half * (X[0] + X[2])};
+  cube.description.quasi_static = false;
+  cube.description.forces.of<Gravity>() = {{{0.0, 0.0, -9.81}, {{0.0, 0.5}, {0.0, 1.0}}}};
+  for (const double side : {-1.0, 1.0}) {
+    Obstacle plane = ground();
+    plane.label = side < 0.0 ? "right" : "left";
+    plane.set = side < 0.0 ? "side" : "foot";
+    plane.normal = {side, 0.0, 1.0};
+    plane.friction = 0.3;
+    plane.method = Obstacle::Method::kinematic;
+    cube.description.forces.of<Obstacle>().push_back(plane);
+  }
+  cube.description.dynamics.duration = 2.0;
+  for (const double damping : {0.0, 30.0}) {
+    cube.description.dynamics.damping = damping;
+    const Scene scene = cube.scene();
+    Recorder recorder;
+    const Motion motion = integrate(Model(scene, {"tl-perturbation"}), recorder);
+    EXPECT_EQ(motion.repeated, 0);
+    double largest = 0.0;
+    for (const HistoryRow& row : recorder.rows) largest = std::max(largest, row.external_work);
+    for (const HistoryRow& row : recorder.rows)  // damping is integrated from row to row
+      EXPECT_NEAR(total_energy(row), row.external_work, (damping > 0.0 ? 0.01 : 1e-5) * largest) << row.time;
+    if (damping == 0.0) continue;
+    const HistoryRow& last = recorder.rows.back();
+    const double weight = 9.81 * 1000.0 * a * a * a;
+    EXPECT_NEAR(last.reactions.at("left")[2] + last.reactions.at("right")[2], weight, 1e-3 * weight);
+    for (const Vector& v : motion.v) EXPECT_LT(length(v), 1e-6);
+  }
+}
+
 /// A plane jumps between afar and within the body in single steps: no node stays inside, however far from it
 /// the last distance was computed. The body is freed and vibrates in between.
 TEST(KinematicContact, finds_nodes_from_wherever_it_comes) {

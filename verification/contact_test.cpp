@@ -473,14 +473,16 @@ TEST(Contact, rejects_wrong_input) {
          "radius is needed for shape = 'sphere' and must be positive");
   expect(head + "\"capsule\"\npoint = [0.0, 0.0, 2.0]\nend = [0.0, 0.0, 2.0]\nradius = 0.1\n",
          "must differ from point");
-  expect(head + "\"box\"\nhalf_sizes = [1.0, 1.0, 0.0]\n", "half_sizes is needed for shape = 'box'");
-  expect(head + "\"sphere\"\nradius = 0.1\nnormal = [0.0, 0.0, 1.0]\n",
+  expect(head + "\"box\"\npoint = [0, 0, 2]\nhalf_sizes = [1.0, 1.0, 0.0]\n",
+         "half_sizes is needed for shape = 'box'");
+  expect(head + "\"sphere\"\npoint = [0, 0, 2]\nradius = 0.1\nnormal = [0.0, 0.0, 1.0]\n",
          "normal has no meaning for shape = 'sphere'");
+  expect(head + "\"sphere\"\nradius = 0.1\n", "point is needed for shape = 'sphere' and has no default");
   expect(head + "\"ball\"\n", "plane");
   expect(head + "\"sphere\"\npoint = [0.5, 0.5, 1.2]\nradius = 0.3\n",
-         "at (0.5, 0.5, 1) m is 0.1 m inside of it at the start");
+         "at (0.5, 0.5, 1) m is 0.1 m inside it at the start");
   expect(head + "\"sphere\"\npoint = [0.5, 0.5, 0.5]\nradius = 0.6\ninside = true\n",
-         "allowed: a body that is within of it");
+         "allowed: a body inside it");
   const std::string sphere = head + "\"sphere\"\npoint = [0.5, 0.5, 2.0]\nradius = 0.3\n";
   expect(sphere + sphere, "another obstacle has the same name");
   std::string other = sphere;

@@ -92,10 +92,12 @@ struct Jump {
         for (std::size_t i = 0; i < 3; ++i) u[n][i] = share * way[i], inverse[n][i] = 1.0;
       }
       Rows<double> increment = u;
+      const Rows<double> last(8);
       const NodalRows now(u.data(), places);
       contact.add_contact(factors, now, memory.data(), {sums.data(), places});
       contact.push_out(factors, {{u.data(), places},
                                  {increment.data(), places},
+                                 {last.data(), places},
                                  {std::as_const(inverse).data(), places},
                                  1.0,
                                  memory.data()});

@@ -15,15 +15,15 @@ namespace sandglass {
 
 /// How a body and an obstacle, or two surfaces of a body, touched at an evaluation.
 struct Touch {
-  std::string_view name = {};         ///< of the obstacle or of the pair
-  Vector force = {};                  ///< on the body, or on the first surface, N
-  Vector moved = {};                  ///< displacement of the obstacle on which this force works, m
-  double depth = 0.0;                 ///< the largest of a node, m
-  double stored = 0.0;                ///< energy of the contact, J
-  double dissipated = 0.0;            ///< since the start, J
-  double worked = 0.0;                ///< by an obstacle that moves nodes, since the start, J
-  int contrary = 0;                   ///< nodes whose fixed contact pulls them, or lets them penetrate
-  int passed = -1;                    ///< a node that may have passed through since the start; -1: none
+  std::string_view name = {};  ///< of the obstacle or of the pair
+  Vector force = {};           ///< on the body, or on the first surface, N
+  Vector moved = {};           ///< displacement of the obstacle on which this force works, m
+  double depth = 0.0;          ///< the largest of a node, m
+  double stored = 0.0;         ///< energy of the contact, J
+  double dissipated = 0.0;     ///< since the start, J; zero if it moves nodes: see Loads::lost_by_pushes
+  double worked = 0.0;         ///< by an obstacle that moves nodes, since the start, J
+  int contrary = 0;            ///< nodes whose fixed contact pulls them, or lets them penetrate
+  int passed = -1;             ///< a node that may have passed through since the start; -1: none
   std::optional<Vector> moment = {};  ///< of the force of an obstacle, about its point where it is, N m
 };
 
@@ -164,6 +164,7 @@ struct Movable {
 /// Nodes that an obstacle may move back onto itself within a step.
 struct NodalPush {
   AtNodes<Row<double>> u, increment;          ///< m
+  AtNodes<const Row<double>> last;            ///< increment of the last step, m; zero in the first
   AtNodes<const Row<double>> inverse_masses;  ///< 1/kg, zero on constrained components
   double gain;                                ///< s^2: a force adds gain / mass to the increment
   Row<double>* memory;

@@ -10,32 +10,29 @@ namespace {
 constexpr std::string_view in_steps = "it moves nodes within time steps";
 
 /// A row for the position (m) of the obstacle at the end of the last step, one for its motion in it, and for
-/// each node one for its motion in it relative to the obstacle, and one for what is known of the gap: the
-/// normal at the end of the step, or, of a node outside, the place in the frame of the obstacle where its
-/// distance was last computed, and the distance (m). Nearer to that place than this, it is still outside.
+/// each node one for what is known of the gap: the normal at the end of the step, or, of a node outside, the
+/// place in the frame of the obstacle where its distance was last computed, and the distance (m). Nearer to
+/// that place than this, it is still outside.
 class KinematicContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
 
-  /// The force of a node is its mass times the change of velocity over the step. It acts between two steps,
-  /// so its work is the product with the mean of their motions; what it takes from the body at rest on the
-  /// obstacle is lost.
+  /// The force on a node is its mass times the change of velocity over the step. It acts between two steps,
+  /// so the obstacle works with the mean of its motions.
   void push_out(Factors factors, const NodalPush& nodes) const override {
     ContactMemory memory(nodes.memory);
     const Vector moved = path_.at(factors);
     Row<double>&position = memory.others[0], &last_of_obstacle = memory.others[1];
-    const Vector of_obstacle = difference(moved, {position[0], position[1], position[2]});
+    const bool first = position[3] == 0.0;
+    const Vector before = first ? path_.start : Vector{position[0], position[1], position[2]};
+    const Vector of_obstacle = difference(moved, before);
     memory.clear_forces();
     for_each_node(moved, nodes.u, [&](std::size_t k, const Vector& x, const auto& compute_gap) {
+      Row<double>& known = memory.others[own + k];
+      if (is_outside(x, known)) return;
       const int node = nodes_[k].node;
-      Row<double>&last = memory.others[own + 2 * k], &known = memory.others[own + 2 * k + 1];
       Row<double>& increment = nodes.increment[node];
-      Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
-      if (is_outside(x, known)) {
-        last = row_of(motion);
-        return;
-      }
-      const bool first = position[3] == 0.0;
+      const Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
       const Gap gap = compute_gap();
       if (passes(x, gap, motion)) memory.note_passed(node);
       if (gap.distance < 0.0) {
@@ -43,20 +40,16 @@ class KinematicContact final : public ObstacleContact {
                                                      : Vector{known[0], known[1], known[2]};
         const Row<double>& w = nodes.inverse_masses[node];
         const Vector change = correction(gap, direction(gap, start), motion, w);
-        motion = sum(motion, 1.0, change);
-        if (first) last = row_of(sum({}, -0.5, change));  // as in kinematic_pair.cpp
         Vector force{};
         for (std::size_t i = 0; i < 3; ++i) {
           if (!(w[i] > 0.0)) continue;
           nodes.u[node][i] += change[i];
           increment[i] += change[i];
           force[i] = change[i] / (w[i] * nodes.gain);
-          memory.sums[0] -= 0.5 * force[i] * (last[i] + motion[i]);
           memory.sums[1] += 0.5 * force[i] * (last_of_obstacle[i] + of_obstacle[i]);
         }
         memory.add_force(force, difference(sum(x, 1.0, change), obstacle_.point));
       }
-      last = row_of(motion);
       known = gap.distance > 0.0 ? Row<double>{{x[0], x[1], x[2], gap.distance}} : row_of(gap.normal);
     });
     position = {{moved[0], moved[1], moved[2], 1.0}};
@@ -72,7 +65,7 @@ class KinematicContact final : public ObstacleContact {
                  std::vector<LoadRates>& /*rates*/) const override {}
   void add_springs(Factors /*factors*/, NodalRows /*u*/, const Row<double>* /*memory*/,
                    std::vector<Spring>& /*springs*/) const override {}
-  std::size_t memory() const override { return ContactMemory::own + own + 2 * nodes_.size(); }
+  std::size_t memory() const override { return ContactMemory::own + own + nodes_.size(); }
 
  private:
   static constexpr std::size_t own = 2;

@@ -11,14 +11,14 @@ namespace {
 
 /// Points remember also the weights of the point of the face that they meet; the direction to it where the
 /// step starts and their impulse along it, kg m; their impulse along the face, kg m; the direction to it
-/// where the step ends, and the motion with which they may leave, m. Nodes remember their motion in the last
-/// step, and how far the contact moves them in this one, m. The strength of points that touch is one more
+/// where the step ends, and the motion with which they may leave, m. Nodes remember how far the contact moves
+/// them in this step, m. The strength of points that touch is one more
 /// than the number of the triangle of the face.
 class KinematicPair final : public SurfacePair {
  public:
   KinematicPair(const Contact& contact, SurfacesOfPair given, const NodalField& points,
                 std::span<const Hexahedron> cells)
-      : SurfacePair(contact, std::move(given), points, cells, 5, 2) {}
+      : SurfacePair(contact, std::move(given), points, cells, 5, 1) {}
 
   bool moves_nodes() const override { return true; }
 
@@ -27,7 +27,7 @@ class KinematicPair final : public SurfacePair {
     memory.pushes = memory.moves = {};
     const double friction_now = friction(factors);
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-      for (std::size_t n = 0; n < surfaces_[s].nodes().size(); ++n) of_nodes(memory, s)[2 * n + 1] = {};
+      std::fill_n(of_nodes(memory, s), surfaces_[s].nodes().size(), Row<double>{});
     }
     double deepest = 0.0;
     const auto use = [&](const Side& side, std::size_t k, const Vector& x, const SurfaceFoot& foot) {
@@ -38,7 +38,7 @@ class KinematicPair final : public SurfacePair {
       const Meeting meeting = meeting_of(side, k, memory);
       const auto [end, n] = MovingSurface::directions(
           foot, x, meeting.onto.corners_now(foot.face, meeting.of_onto), meeting.corners_before(nodes));
-      remembered[4] = {{end[0], end[1], end[2], motion_to_leave(meeting, n)}};
+      remembered[4] = {{end[0], end[1], end[2], motion_to_leave(meeting, n, nodes)}};
       remembered[1] = weights_before(meeting, n, nodes);
       remembered[2] = {{n[0], n[1], n[2], is_new ? 0.0 : remembered[2][3]}};
       const Vector along{remembered[3][0], remembered[3][1], remembered[3][2]};
@@ -69,11 +69,6 @@ class KinematicPair final : public SurfacePair {
                    AtNodes<Row<double>> /*forces*/) const override {}
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
                  std::vector<LoadRates>& /*rates*/) const override {}
-
-  void begin_again(const Vector& force, const Vector& moment, Row<double>* rows) const override {
-    ContactForce::begin_again(force, moment, rows);
-    ContactMemory(rows).others[0][has_moved] = 0.0;
-  }
 
  private:
   /// A point that touches, and the face.
@@ -179,14 +174,14 @@ class KinematicPair final : public SurfacePair {
     for (std::size_t I = 0; I < 4; ++I) {
       const int place = meeting.corners[I], node = meeting.onto.nodes()[at(place)];
       push(node, meeting.weights[I] - there[I], impulse, nodes, meeting.of_onto[place],
-           meeting.nodes_onto[2 * at(place) + 1]);
+           meeting.nodes_onto[place]);
     }
   }
 
   /// Moves the nodes of a point and of the face that it touches by an impulse, kg m.
   static void push(const Meeting& meeting, const Vector& impulse, const NodalPush& nodes) {
     meeting.for_each_node([&](int node, std::size_t place, double weight, Row<double>* x, Row<double>* rows) {
-      push(node, weight, impulse, nodes, x[place], rows[2 * place + 1]);
+      push(node, weight, impulse, nodes, x[place], rows[place]);
     });
   }
 
@@ -198,10 +193,10 @@ class KinematicPair final : public SurfacePair {
   static constexpr double recovered = 0.02;
 
   /// The motion (m) along n with which a point may leave the face in this step, from that in the last.
-  static double motion_to_leave(const Meeting& meeting, const Vector& n) {
+  static double motion_to_leave(const Meeting& meeting, const Vector& n, const NodalPush& nodes) {
     Vector last{};
-    meeting.for_each_node([&](int, std::size_t place, double weight, const Row<double>*, Row<double>* rows) {
-      for (std::size_t i = 0; i < 3; ++i) last[i] += weight * rows[2 * place][i];
+    meeting.for_each_node([&](int node, std::size_t, double weight, const Row<double>*, Row<double>*) {
+      for (std::size_t i = 0; i < 3; ++i) last[i] += weight * nodes.last[node][i];
     });
     const double arrived = dot(last, n);
     return arrived < 0.0 ? returned * arrived : arrived;
@@ -241,34 +236,21 @@ class KinematicPair final : public SurfacePair {
     return std::abs(impulse - before) * along_n;
   }
 
-  /// The force of a node is its mass times the change of velocity over the step. It acts between two steps,
-  /// so its work is the product with the mean of their motions, and lost.
+  /// The force on a node is its mass times the change of velocity over the step.
   void settle_accounts(const NodalPush& nodes, ContactMemory& memory) const {
-    Row<double>& of_pair = memory.others[0];
     double farthest = 0.0;
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-      Row<double>* rows = of_nodes(memory, s);
+      const Row<double>* moved = of_nodes(memory, s);
       for (std::size_t n = 0; n < surfaces_[s].nodes().size(); ++n) {
-        const int node = surfaces_[s].nodes()[n];
-        Row<double>& last = rows[2 * n];
-        const Row<double>&moved = rows[2 * n + 1], &motion = nodes.increment[node],
-              &w = nodes.inverse_masses[node];
+        const Row<double>& w = nodes.inverse_masses[surfaces_[s].nodes()[n]];
         for (std::size_t i = 0; i < 3; ++i) {
-          // The first force acts for half a step. If it changes the velocity v of a node by d, its work is
-          // m d (v + d / 2).
-          if (of_pair[has_moved] == 0.0) last[i] = -0.5 * moved[i];
-          if (w[i] > 0.0 && moved[i] != 0.0) {
-            const double force = moved[i] / (w[i] * nodes.gain);
-            if (s == 0 && surfaces_.size() > 1) memory.pushes[i] += force;
-            memory.sums[0] -= 0.5 * force * (last[i] + motion[i]);
-            farthest = std::max(farthest, std::abs(moved[i]));
-          }
-          last[i] = motion[i];
+          if (!(w[i] > 0.0)) continue;
+          if (s == 0 && surfaces_.size() > 1) memory.pushes[i] += moved[n][i] / (w[i] * nodes.gain);
+          farthest = std::max(farthest, std::abs(moved[n][i]));
         }
       }
     }
-    of_pair[has_moved] = 1.0;
-    of_pair[way_so_far] += 2.0 * std::sqrt(3.0) * farthest;
+    memory.others[0][way_so_far] += 2.0 * std::sqrt(3.0) * farthest;
     memory.moves[3] = for_each_meeting(memory, [](const Meeting& meeting) {  // what is left
       double apart = 0.0;
       meeting.for_each_node([&](int, std::size_t place, double weight, const Row<double>* x, Row<double>*) {

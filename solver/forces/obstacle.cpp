@@ -12,7 +12,7 @@ namespace sandglass {
 namespace {
 
 bool is_given(const Vector& v) {
-  return v != Vector{};
+  return v != Vector{} && !std::isnan(v[0]);
 }
 
 /// `file` is the case's.
@@ -57,8 +57,9 @@ std::optional<BrokenRule> Obstacle::broken_rule() const {
     const char* rule;
   };
   for (const auto& [parameter, needed, given, rule] :
-       {Need{"normal", is_plane, is_given(normal), "must have a length"},
-        Need{"end", has_axis, has_axis ? end != point : is_given(end), "must differ from point"},
+       {Need{"point", !is_file, !is_file ? !std::isnan(point[0]) : false, "has no default"},
+        Need{"normal", is_plane, is_given(normal), "must have a length"},
+        Need{"end", has_axis, !std::isnan(end[0]) && !(has_axis && end == point), "must differ from point"},
         Need{"file", is_file, !file.empty(), "must name a closed surface"},
         Need{"radius", !is_plane && !has_sizes && !is_file, radius > 0.0, "must be positive"},
         Need{"half_sizes", has_sizes,
@@ -98,14 +99,16 @@ void Obstacle::resolve(ForceResolver& resolver) const {
   std::vector<double> factors;
   for (const LoadCurve& each : resolver.curves) factors.push_back(each.at(0.0, 0.0));
   path.start = path.at(factors);
+  Obstacle given = *this;
+  for (Vector* place : {&given.point, &given.end}) *place = is_given(*place) ? *place : Vector{};
   auto contact =
-      make_moving_contact(std::move(touching), *this, shape_of(*this, resolver.file), std::move(path));
+      make_moving_contact(std::move(touching), given, shape_of(given, resolver.file), std::move(path));
   const auto depth_of = [&](const TouchingNode& one) { return contact->depth_at_start(one); };
   const TouchingNode deepest = *std::ranges::max_element(contact->touching(), {}, depth_of);
   if (const double depth = depth_of(deepest); depth > scale.rounding()) {
     refuse_node(resolver, name, label, deepest.node,
-                fmt::format("is {:.3g} m inside of it at the start", depth),
-                fmt::format("a body that is {} of it", inside ? "within" : "outside"));
+                fmt::format("is {:.3g} m {} it at the start", depth, inside ? "outside" : "inside"),
+                fmt::format("a body {} it", inside ? "inside" : "outside"));
   }
   const auto place = contact->point_of_shape();
   if (place && !inside && winding_number(*place, resolver.boundary, resolver.points) > 0.5) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "forces/force_resolver.hpp"
@@ -31,6 +32,8 @@ struct Obstacle {
   static constexpr bool by_mass = false;
   static constexpr std::array<std::string_view, 2> numerical{"penalty", "method"};
 
+  static constexpr Vector not_given{NAN, NAN, NAN};  ///< to be the origin, but case files must say so
+
   enum class Shape { plane, sphere, capsule, cylinder, box, ellipsoid, surface };
   friend constexpr std::array<std::string_view, 7> words_of(Shape /*type*/) {
     return {"plane", "sphere", "capsule", "cylinder", "box", "ellipsoid", "surface"};
@@ -46,11 +49,11 @@ struct Obstacle {
   std::string label;
   std::string set;
   Shape shape = Shape::plane;
-  Vector point{};       ///< m
-  Vector end{};         ///< m
-  Vector normal{};      ///< of any length
-  double radius = 0.0;  ///< m
-  Vector half_sizes{};  ///< m
+  Vector point = not_given;  ///< m
+  Vector end = not_given;    ///< m
+  Vector normal{};           ///< of any length
+  double radius = 0.0;       ///< m
+  Vector half_sizes{};       ///< m
   std::string file;
   bool inside = false;    ///< whether the body is inside of it, as in a cavity
   Vector displacement{};  ///< at the factor one, m
@@ -69,7 +72,7 @@ struct Obstacle {
         Parameter{
             &O::point, "point", "m", Range::any(),
             "a point of the plane, the centre of the sphere, box or ellipsoid, one end of the axis, or the "
-            "origin of the file",
+            "origin of the file (by default that of coordinates)",
             false},
         Parameter{&O::end, "end", "m", Range::any(),
                   "the other end of the axis of a capsule or of a cylinder, which is infinite along it",

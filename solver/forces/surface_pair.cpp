@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/error.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -59,6 +61,16 @@ int SurfacePair::node_of(const MovingSurface& surface, const SurfacePoint& point
   const auto& weights = point.weights.x;
   const auto I = static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
   return surface.nodes()[at(point.nodes[I])];
+}
+
+double SurfacePair::friction(Factors factors) const {
+  const double factor = factors[given_.friction_curve], friction_now = contact_.friction * factor;
+  if (friction_now < 0.0) {
+    throw InputError(
+        fmt::format("{} '{}': the factor of the friction becomes {:.6g}; allowed: none below zero",
+                    Contact::name, contact_.label, factor));
+  }
+  return friction_now;
 }
 
 std::shared_ptr<const BodyForce> SurfacePair::restricted_to(const MeshPart& part) const {

@@ -58,8 +58,8 @@ class SurfacePair : public ContactForce, public std::enable_shared_from_this<Sur
 
  protected:
   /// What a pair remembers in its first row: the sum of the largest relative motions of nodes, m; the last of
-  /// them, infinite at first; whether it has taken a step.
-  enum OfPair : std::size_t { way_so_far = 0, last_way = 1, has_moved = 2 };
+  /// them, infinite at first.
+  enum OfPair : std::size_t { way_so_far = 0, last_way = 1 };
 
   /// What points remember in their first row: until which way they touch nothing, m; the face that they
   /// touch; their strength, zero if they do not touch; their depth then, m.
@@ -93,10 +93,8 @@ class SurfacePair : public ContactForce, public std::enable_shared_from_this<Sur
     return of_surface(memory, s) + surfaces_[s].rows();
   }
 
-  /// Coulomb's coefficient now.
-  double friction(Factors factors) const {
-    return std::max(0.0, contact_.friction * factors[given_.friction_curve]);
-  }
+  /// Coulomb's coefficient now. Throws InputError where the curve makes it negative.
+  double friction(Factors factors) const;
 
   /// Calls use(side, k, x, foot) for all points k at x (m) that touch at displacements u (m), and
   /// let_go(of_point) for points that touched before and do not now.

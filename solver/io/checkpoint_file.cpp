@@ -16,7 +16,7 @@ namespace {
 constexpr std::array history_columns{
     &HistoryRow::time,          &HistoryRow::kinetic,  &HistoryRow::strain,    &HistoryRow::hourglass,
     &HistoryRow::external_work, &HistoryRow::residual, &HistoryRow::step_size, &HistoryRow::adaption,
-    &HistoryRow::contact,       &HistoryRow::friction, &HistoryRow::depth};
+    &HistoryRow::contact,       &HistoryRow::friction, &HistoryRow::depth,     &HistoryRow::damping};
 static_assert(sizeof(HistoryRow) == history_columns.size() * sizeof(double) + 2 * sizeof(Reactions),
               "a column is missing");
 

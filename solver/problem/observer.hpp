@@ -26,9 +26,10 @@ struct HistoryRow {
   double adaption = 0.0;     ///< J, energy due to changes of levels in dynamic runs; see Adaption
   Reactions reactions = {};  ///< N
   double contact = 0.0;      ///< J, stored where obstacles are touched
-  double friction = 0.0;     ///< J, dissipated on obstacles
+  double friction = 0.0;     ///< J, lost in contact, also in impacts where it moves nodes
   double depth = 0.0;        ///< m, the largest of a node inside an obstacle
   Reactions moments = {};    ///< of obstacles, N m; see Touch
+  double damping = 0.0;      ///< J, lost to the damping of free components, by the trapezoidal rule
 };
 
 /// A frame of the results, in the numbering of the mesh.

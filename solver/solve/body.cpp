@@ -68,7 +68,7 @@ Reactions Body<Real>::moments_of_obstacles() const {
 
 template <class Real>
 Touch Body<Real>::touch() const {
-  Touch sum;
+  Touch sum{.dissipated = loads_.lost_by_pushes()};
   loads_.for_each_touch([&](const Touch& touch) {
     sum.depth = std::max(sum.depth, touch.depth);
     sum.stored += touch.stored;

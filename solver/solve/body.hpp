@@ -144,6 +144,9 @@ class Body {
     if (loads_.push_out(state_, inverse_masses, gain)) follow();
   }
 
+  /// See Loads::subtract_pushes.
+  void subtract_pushes(Rows<Real>& force) const { loads_.subtract_pushes(force); }
+
   /// Adds the work of the loads since the last call.
   void add_work_of_loads() { loads_.add_work(state_.u); }
 

@@ -56,12 +56,24 @@ class CentralDifference {
 
   double adaption_energy() const { return adaption_energy_; }
 
-  /// The kinetic energy (J) at velocities v (m/s), from the product of velocities half a step before and
-  /// after: central differences conserve its sum with the strain energy, in small motions exactly.
-  double kinetic_energy(const NodalField& v) const {
-    double sum = 0.0;
+  struct Kinetic {
+    double energy;   ///< J
+    double damping;  ///< power that damping takes from free components, W
+  };
+
+  /// From the product of velocities half a step before and after: central differences conserve the sum of
+  /// this energy with the strain energy, in small motions exactly. Contact that moves nodes adds its work
+  /// with the next step, so that it has no part in the velocities after this one.
+  Kinetic kinetic() const {
+    const NodalField v = velocities(false);
+    double sum = 0.0, driven = 0.0;
     for (std::size_t n = 0; n < v.size(); ++n) sum += model_.masses()[n] * dot(v[n], v[n]);
-    return 0.5 * sum - leapfrog_.energy_of_step();
+    for (const Constraint& constraint : model_.scene().constraints) {
+      const double of_path = v[at(constraint.node)][at(constraint.component)];
+      driven += model_.masses()[at(constraint.node)] * of_path * of_path;
+    }
+    const double energy = 0.5 * sum - leapfrog_.energy_of_step();
+    return {energy, 2.0 * settings_.damping * std::max(energy - 0.5 * driven, 0.0)};
   }
 
   /// The data that the next step depends on; see checkpoint.hpp.
@@ -184,8 +196,11 @@ class CentralDifference {
   }
 
   /// Velocities (m/s) at the time of the displacements; driven nodes have the velocities of their paths.
-  NodalField velocities() const {
-    NodalField v = leapfrog_.free_velocities();
+  NodalField velocities() const { return velocities(true); }
+
+ private:
+  NodalField velocities(bool with_pushes) const {
+    NodalField v = leapfrog_.free_velocities(with_pushes);
     const LoadingCurve now = curve(time());
     for (const Constraint& constraint : model_.scene().constraints) {
       const ImposedPath& path = constraint.path;
@@ -196,7 +211,6 @@ class CentralDifference {
     return v;
   }
 
- private:
   /// The step that is due (s): the last one ends at the duration.
   double due_step() const {
     const double left = settings_.duration - time();
@@ -290,28 +304,32 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   Motion motion;
   int frames = 0;
   EnergyWatch watch;
-  NodalField v;  // at the last check, with its energies
-  StrainEnergies energies;
-  double kinetic = 0.0;
+  StrainEnergies energies;  // at the last check
+  typename CentralDifference<Real>::Kinetic kinetic{};
+  double damped = 0.0, damping = 0.0, reported = 0.0;  // J; in the last report, W; its time, s
   Touch touch;
 
   const auto frame_due = [&] {  // up to the roundoff of a sum of steps
     return scheme.time() >= frames * settings.duration / settings.frames * (1.0 - 1e-12) || scheme.finished();
   };
   const auto gains_energy = [&] {
-    v = scheme.velocities();
     energies = body.energies();
-    kinetic = scheme.kinetic_energy(v);
+    kinetic = scheme.kinetic();
     touch = body.touch();
-    return watch.rises(kinetic + energies.strain + energies.hourglass + touch.stored + touch.dissipated,
-                       scheme.external_work() + scheme.adaption_energy(), scheme.step_size());
+    return watch.rises(
+        kinetic.energy + energies.strain + energies.hourglass + touch.stored + touch.dissipated,
+        scheme.external_work() + scheme.adaption_energy(), scheme.step_size());
   };
   const auto report = [&] {
-    observer.history({scheme.time(), kinetic, energies.strain, energies.hourglass, scheme.external_work(),
-                      body.residual(), scheme.step_size(), scheme.adaption_energy(), body.reactions_of_sets(),
-                      touch.stored, touch.dissipated, touch.depth, body.moments_of_obstacles()});
+    damped += 0.5 * (damping + kinetic.damping) * (scheme.time() - reported);
+    damping = kinetic.damping;
+    reported = scheme.time();
+    observer.history({scheme.time(), kinetic.energy, energies.strain, energies.hourglass,
+                      scheme.external_work(), body.residual(), scheme.step_size(), scheme.adaption_energy(),
+                      body.reactions_of_sets(), touch.stored, touch.dissipated, touch.depth,
+                      body.moments_of_obstacles(), damped});
     if (frame_due()) {
-      observer.frame(frame_of(body, scheme.time(), std::move(v)));
+      observer.frame(frame_of(body, scheme.time(), scheme.velocities()));
       ++frames;
     }
     const bool proceeds = observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
@@ -326,6 +344,9 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     archive("smallest step", motion.smallest_step);
     archive("most substeps", motion.most_substeps);
     archive("repeated intervals", motion.repeated);
+    archive("energy lost to damping", damped);
+    archive("power of damping", damping);
+    archive("time of report", reported);
   };
   const auto checkpoint = [&] {
     Checkpoint state;

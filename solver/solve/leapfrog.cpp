@@ -94,10 +94,11 @@ void Leapfrog<Real>::set_initial_velocities(const NodalField& v) {
 }
 
 template <class Real>
-NodalField Leapfrog<Real>::free_velocities() const {
+NodalField Leapfrog<Real>::free_velocities(bool with_pushes) const {
   const double half = 0.5 * clock_.step_size;
   const Rows<Real>& increment = body_.state().increment;
-  const Rows<Real>& force = body_.free_forces();
+  Rows<Real> force = body_.free_forces();
+  if (with_pushes) body_.subtract_pushes(force);
   Rows<Real> rows(increment.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -111,12 +112,20 @@ NodalField Leapfrog<Real>::free_velocities() const {
 
 template <class Real>
 double Leapfrog<Real>::energy_of_step() const {
-  const Rows<Real>& force = body_.free_forces();
-  Rows<Real> acceleration(force.size());
+  const Rows<Real>&force = body_.free_forces(), &increment = body_.state().increment;
+  const double dt = clock_.step_size, c = clock_.damping;
+  Rows<Real> change(force.size()), momentum(force.size());  // of velocities, over the step
   for (std::size_t r = 0; r < force.size(); ++r) {
-    for (std::size_t i = 0; i < 3; ++i) acceleration[r][i] = inverse_masses_[r][i] * force[r][i];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto w = static_cast<double>(inverse_masses_[r][i]);
+      if (!(w > 0.0)) continue;
+      const double v_half = static_cast<double>(increment[r][i]) / clock_.increment_time;
+      const double dv = -dt * (w * static_cast<double>(force[r][i]) + c * v_half) / (1.0 + 0.5 * c * dt);
+      change[r][i] = static_cast<Real>(dv);
+      momentum[r][i] = static_cast<Real>(dv / w);
+    }
   }
-  return 0.125 * clock_.step_size * clock_.step_size * dot(force, acceleration, body_.layout().row_blocks);
+  return 0.125 * dot(momentum, change, body_.layout().row_blocks);
 }
 
 template class Leapfrog<double>;

@@ -87,11 +87,12 @@ class Leapfrog {
   }
 
   /// Velocities (m/s) at the time of the displacements: the mean of those half a step before and after,
-  /// damping included; zero on constrained components.
-  NodalField free_velocities() const;
+  /// damping included; zero on constrained components. Contact that moves nodes acts in the step after, which
+  /// is not known yet: with the pushes of the step before, or without any.
+  NodalField free_velocities(bool with_pushes) const;
 
-  /// dt^2/8 f M^-1 f (J): the excess of the kinetic energy of `free_velocities` over half the product of
-  /// masses and velocities half a step before and after.
+  /// The excess (J) of the kinetic energy of `free_velocities`, without pushes, over half the product of
+  /// masses and velocities half a step before and after: an eighth of the product with their change.
   double energy_of_step() const;
 
   /// The data that the next step depends on; see checkpoint.hpp.

@@ -38,6 +38,7 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
   place_nodes(false);
   u_ = increment_ = Rows<double>(rows_.size());
   if (!contacts_.empty()) touching_ = masses_ = u_;
+  if (moves_nodes_) pushes_of_step_ = last_increment_ = u_;
   place_nodes(true);
   forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
   for (const auto& force : scene.forces) {
@@ -72,6 +73,8 @@ void Loads<Real>::begin_again(const Reactions& forces, const Reactions& moments)
     const auto moment = moments.find(name);  // of obstacles only
     contacts_[c]->begin_again(forces.at(name), moment == moments.end() ? Vector{} : moment->second, memory);
   }
+  std::fill(last_increment_.begin(), last_increment_.end(), Row<double>{});
+  has_pushed_ = 0.0;
 }
 
 template <class Real>
@@ -150,10 +153,11 @@ bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses,
   take(state.u, u_);
   take(state.increment, increment_);
   take(inverse_masses, masses_);
-  const Rows<double>& masses = masses_;
+  const Rows<double>&masses = masses_, &last = last_increment_;
+  pushes_of_step_ = increment_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    contacts_[c]->push_out(factors_, {by_node(u_.data()), by_node(increment_.data()), by_node(masses.data()),
-                                      gain, memory_.data() + memory_of_[c]});
+    contacts_[c]->push_out(factors_, {by_node(u_.data()), by_node(increment_.data()), by_node(last.data()),
+                                      by_node(masses.data()), gain, memory_.data() + memory_of_[c]});
   }
   for (std::size_t k = 0; k < u_.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -161,7 +165,38 @@ bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses,
       state.increment[rows_[k]][i] = static_cast<Real>(increment_[k][i]);
     }
   }
+  add_work_of_pushes(gain);
   return true;
+}
+
+/// A push acts between two steps, so its work is the product with the mean of their motions. The first acts
+/// for half a step: if it changes the velocity v of a mass m by d, its work is m d (v + d / 2).
+template <class Real>
+void Loads<Real>::add_work_of_pushes(double gain) {
+  for (std::size_t k = 0; k < pushes_of_step_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double now = increment_[k][i], by = now - pushes_of_step_[k][i];
+      const double last = has_pushed_ != 0.0 ? last_increment_[k][i] : -0.5 * by;
+      pushes_of_step_[k][i] = by != 0.0 ? by / (masses_[k][i] * gain) : 0.0;
+      work_of_pushes_ += 0.5 * pushes_of_step_[k][i] * (last + now);
+    }
+  }
+  last_increment_ = increment_;
+  has_pushed_ = 1.0;
+}
+
+template <class Real>
+void Loads<Real>::subtract_pushes(Rows<Real>& force) const {
+  for (std::size_t k = 0; k < pushes_of_step_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) force[rows_[k]][i] -= static_cast<Real>(pushes_of_step_[k][i]);
+  }
+}
+
+template <class Real>
+double Loads<Real>::lost_by_pushes() const {
+  double lost = -work_of_pushes_;
+  for_each_touch([&](const Touch& touch) { lost += touch.worked; });
+  return lost;
 }
 
 template <class Real>

@@ -37,6 +37,12 @@ class Loads {
   /// obstacles.
   bool push_out(State<Real>& state, const Rows<Real>& inverse_masses, double gain);
 
+  /// Subtracts from forces (N), by row, those with which obstacles moved nodes in the last step.
+  void subtract_pushes(Rows<Real>& force) const;
+
+  /// What was lost (J) as contact moved nodes: the work of obstacles less that done on nodes.
+  double lost_by_pushes() const;
+
   /// The square of the norm of the loads (N^2) that were last evaluated.
   double square() const { return square_; }
 
@@ -109,6 +115,11 @@ class Loads {
     archive("memory of contacts", memory_);
     archive("memory of contacts before", memory_before_);
     archive("work of obstacles", work_of_obstacles_);
+    if (!moves_nodes_) return;
+    archive("increments before", last_increment_);
+    archive("pushes", pushes_of_step_);
+    archive("work of pushes", work_of_pushes_);
+    archive("has pushed", has_pushed_);
   }
 
  private:
@@ -121,6 +132,8 @@ class Loads {
   /// Sets the values of the first loaded rows to those of all rows.
   void take(const Rows<Real>& all, Rows<double>& loaded) const;
   Rows<double> loaded(const Rows<Real>& all) const;
+
+  void add_work_of_pushes(double gain);
 
   /// Sets the values at loaded rows that other ranks own.
   void gather(std::span<double> values) const;
@@ -141,6 +154,10 @@ class Loads {
   Rows<double> forces_;                  // N, of loaded rows, except those of obstacles
   Rows<double> touching_;                // N, those, of the first rows; empty without any
   Rows<double> masses_;                  // 1/kg, inverse, of the first rows; empty without obstacles
+  Rows<double> pushes_of_step_;          // N, of the first rows; empty if none moves nodes
+  Rows<double> last_increment_;          // m, of these rows in the last step
+  double has_pushed_ = 0.0;              // whether there was a last step
+  double work_of_pushes_ = 0.0;          // J
   Rows<double> memory_, memory_before_;  // of contacts
   double work_of_obstacles_ = 0.0;       // J
   Rows<double> forces_before_, u_before_;

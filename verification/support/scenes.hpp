@@ -91,7 +91,7 @@ class Recorder final : public Observer {
 
 /// All stored and kinetic energy in a row of history, and what friction dissipated, J.
 inline double total_energy(const HistoryRow& row) {
-  return row.kinetic + row.strain + row.hourglass + row.contact + row.friction;
+  return row.kinetic + row.strain + row.hourglass + row.contact + row.friction + row.damping;
 }
 
 /// The largest difference between the work done and the total energy in any row, over the total work at
