@@ -126,6 +126,32 @@ TEST(StaticFriction, holds_a_block_on_a_slope) {
   }
 }
 
+/// The top of a block is pressed down and pushed sideways. A node that slipped in one evaluation may be held
+/// in the next: if its friction still had its full size, it would turn around where the spring along the
+/// ground has no length, and no equilibrium was found at any load. Friction is as the sides of the block
+/// demand, whatever the number of levels.
+TEST(StaticFriction, holds_again_what_slipped) {
+  Column block({0.147, 0.079, 0.076}, {2, 4, 4}, NeoHookean{.young_modulus = 1.1e4, .poisson_ratio = 0.3});
+  block.description.forces.of<Gravity>() = {{.value = {0.0, 0.0, -9.81}}};
+  Obstacle rough{.label = "ground", .set = "foot", .normal = {0.0, 0.0, 1.0}};
+  rough.friction = 0.5;
+  block.description.forces.of<Obstacle>() = {rough};
+  for (const double way : {0.0145, 0.029}) {  // most nodes stick; nearly all slip
+    std::optional<Vector> first;
+    for (const int levels : {0, 5, 40}) {
+      block.description.displacements = {{"top", {way, 0.0, -0.0076}}};
+      block.description.relaxation.levels = levels;
+      Recorder recorder;
+      EXPECT_TRUE(relax(Model(block.scene(), {"tl-perturbation"}), recorder).converged);
+      const Vector& force = recorder.rows.back().reactions.at("ground");
+      if (!first) first = force;
+      EXPECT_LT(distance(force, *first), 0.01 * length(force)) << way << ", " << levels << " levels";
+      EXPECT_NEAR(-force[0] / force[2], way > 0.02 ? 0.495 : 0.42, 0.005) << levels << " levels";
+      EXPECT_LT(std::abs(force[1]), 1e-4 * force[2]) << levels << " levels";
+    }
+  }
+}
+
 /// Two jaws close on a block, which then gets its weight: by friction they hold it, or it falls.
 Column gripped_block(double squeeze) {
   Column block({1.0, 1.0, 1.0}, {4, 4, 4}, NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});

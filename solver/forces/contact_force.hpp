@@ -82,6 +82,12 @@ constexpr double rate_of_one_sided = 9.0;
 /// How a point touches in static equilibrium, in its rows; without friction it sticks.
 constexpr double not_at_all = 0.0, sticking = 1.0, slipping = 2.0;
 
+/// Whether a point that is fixed to touch so may stay, as it would touch if it were `free`. One that may slip
+/// sticks where friction holds it: if it always slipped, its force would turn around as its spring shortens.
+constexpr bool agrees(double fixed, double free) {
+  return fixed == free || (fixed == slipping && free == sticking);
+}
+
 constexpr std::string_view path_of_friction = "friction depends on the path";
 
 /// Two directions of length one at right angles to a third.

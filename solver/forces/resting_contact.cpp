@@ -38,13 +38,14 @@ class RestingContact final : public ObstacleContact {
       const double most = most_extension(gap, of_node), size = length(along);
       const double free = depth <= -constant ? not_at_all : size > most ? slipping : sticking;
       const double touches = fixed ? of_node[0][3] : free;
-      if (touches != free) ++memory.sums[2];
-      of_node[0] = {{touches != free ? 1.0 + free : 0.0, depth, constant, touches}};
+      const bool is_contrary = !agrees(touches, free);
+      if (is_contrary) ++memory.sums[2];
+      of_node[0] = {{is_contrary ? 1.0 + free : 0.0, depth, constant, touches}};
       if (touches == not_at_all) return;
       memory.pushes[3] += 0.5 * stiffness * depth * (depth + 2.0 * constant);
       memory.moves[3] = std::max(memory.moves[3], depth);
       Vector force = sum({}, stiffness * (depth + constant), gap.normal);
-      if (touches == slipping && size > 0.0) along = sum({}, most / size, along);
+      if (touches == slipping && size > most) along = sum({}, most / size, along);
       memory.pushes[3] += 0.5 * stiffness * dot(along, along);
       force = sum(force, -stiffness, along);
       for (std::size_t i = 0; i < 3; ++i) forces[node][i] += force[i];
@@ -140,7 +141,7 @@ class RestingContact final : public ObstacleContact {
       const Row<double>* of_node = memory + ContactMemory::own + by_node() * k;
       const Vector along = extension(k, x, gap, of_node);
       const double most = most_extension(gap, of_node);
-      const bool slips = is_fixed(memory) ? of_node[0][3] == slipping : length(along) > most;
+      const bool slips = length(along) > most && !(is_fixed(memory) && of_node[0][3] == sticking);
       add_with_friction(spring, stiffness, gap.normal, along, most, slips, obstacle_.friction, springs);
     });
   }

@@ -163,7 +163,7 @@ class RestingPair final : public SurfacePair {
     Vector along;      // extension of its spring along the surface before it slips, m
     double most;       // and what friction leaves of it, m
 
-    bool slips() const { return touches == slipping; }
+    bool slips() const { return touches == slipping && length(along) > most; }
   };
 
   bool rubs() const { return contact_.friction > 0.0; }
@@ -309,7 +309,7 @@ class RestingPair final : public SurfacePair {
       const double free = !inside ? not_at_all : rubs() && length(along) > most ? slipping : sticking;
       const double touches = fixed ? of_point[0][strength] : free;
       const bool jumped = fixed && moved;
-      of_point[1][contrary] = touches != free ? 1.0 + free : jumped ? 1.0 + not_at_all : 0.0;
+      of_point[1][contrary] = !agrees(touches, free) ? 1.0 + free : jumped ? 1.0 + not_at_all : 0.0;
       if (of_point[1][contrary] != 0.0) ++memory.sums[2];
       of_point[0][strength] = touches;
       if (face >= 0) {  // correct_contact may attach it
