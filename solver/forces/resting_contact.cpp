@@ -155,7 +155,7 @@ class RestingContact final : public ObstacleContact {
     for (const TouchingNode& one : nodes_) places.resize(std::max(places.size(), at(one.node) + 1), 0);
     for_each_gap(path_.start, NodalRows(undeformed.data(), places),
                  [&](std::size_t k, const Vector& /*x*/, const Gap& gap) {
-                   if (gap.distance > 0.0) return;
+                   if (gap.distance > rounding_) return;
                    hold_point({{nodes_[k].node, 1.0}}, gap.normal, rubs(), holds);
                  });
   }

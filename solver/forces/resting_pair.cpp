@@ -234,7 +234,7 @@ class RestingPair final : public SurfacePair {
   }
 
   double stiffness_of(const Side& side, std::size_t k) const {
-    return 0.5 * stiffer_at_rest * given_.stiffness * surfaces_[side.from].points()[k].area;
+    return 0.5 * given_.stiffness * surfaces_[side.from].points()[k].area;
   }
 
   /// Calls use(side, k, of_point) for all points.

@@ -19,9 +19,6 @@ struct SurfacesOfPair {
   std::size_t friction_curve;                     ///< number of the curve with the factor of the friction
 };
 
-/// By what factor the penalty of a pair is stiffer in static equilibrium, where it limits no step.
-constexpr double stiffer_at_rest = 30.0;
-
 class SurfacePair;
 
 /// A pair of motions in static equilibrium, between two surfaces. Points that touch are pushed along the

@@ -110,7 +110,8 @@ double Body<Real>::carried() const {
 
 template <class Real>
 double Body<Real>::residual() const {
-  const double unbalanced = std::sqrt(dot(force_, force_, layout().row_blocks)), sum = carried();
+  const double unbalanced = std::sqrt(dot(force_, force_, layout().row_blocks)),
+               sum = std::max(carried(), 1e-3 * most_carried_);
   return sum > 0.0 ? unbalanced / sum : unbalanced;
 }
 

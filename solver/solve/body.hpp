@@ -53,7 +53,9 @@ class Body {
   /// The norm of reactions and loads together, N.
   double carried() const;
 
-  /// |free forces| over the norm of reactions and loads together; |free forces| (N) if these are zero.
+  /// |free forces| over the norm of reactions and loads together, or over a thousandth of the largest at the
+  /// end of a load level, if that is more: a body that is unloaded bears nothing. |free forces| (N) if both
+  /// are zero.
   double residual() const;
 
   /// Moves to displacements `target` (m); `impose` sets constrained components and tied nodes afterwards.
@@ -128,7 +130,10 @@ class Body {
   bool augment_contact(bool augmented) { return loads_.augment_contact(augmented); }
 
   /// See Loads::end_level.
-  void end_level() { loads_.end_level(state_.u); }
+  void end_level() {
+    most_carried_ = std::max(most_carried_, carried());
+    loads_.end_level(state_.u);
+  }
 
   /// See Loads::correct_contact.
   void correct_contact() { loads_.correct_contact(); }
@@ -205,6 +210,7 @@ class Body {
     archive("free force", force_);
     archive("body reaction", reactions_);
     archive("load factor", load_factor_);
+    archive("largest reactions and loads", most_carried_);
     loads_.keep(archive);
     if (subcycling_) subcycling_->keep(archive);
   }
@@ -226,6 +232,7 @@ class Body {
   Loads<Real> loads_;
   std::optional<Subcycling<Real>> subcycling_;
   double load_factor_ = 0.0;
+  double most_carried_ = 0.0;  // N, at the ends of load levels
   State<Real> state_;
   Rows<Real> force_;
   std::vector<double> reactions_;

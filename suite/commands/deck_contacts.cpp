@@ -94,8 +94,7 @@ class ContactWriter {
       faces.insert(faces.end(), other.begin(), other.end());
     }
     write_keys(file_, group, given);
-    const double factor = scene_.settings.quasi_static ? stiffer_at_rest : 1.0;
-    file_.write_attribute(group, "stiffness", factor * scale_of(faces).stiffness(given.penalty));
+    file_.write_attribute(group, "stiffness", scale_of(faces).stiffness(given.penalty));
   }
 
  private:
