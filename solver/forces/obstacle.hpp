@@ -104,7 +104,8 @@ struct Obstacle {
         Parameter{
             &O::method, "method", "-", Range::any(),
             "of motions: kinematic moves nodes back onto it in steps as long as without it; penalty pushes "
-            "them, in shorter steps, and loses energy by friction alone; static equilibrium takes the penalty",
+            "them, in shorter steps, and loses energy by friction alone; static equilibrium takes the "
+            "penalty",
             false}};
   }
   std::optional<BrokenRule> broken_rule() const;
