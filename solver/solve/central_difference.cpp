@@ -174,7 +174,7 @@ class CentralDifference {
     if (resident_ != nullptr) return;
     follow_paths();
     const auto& constraints = model_.scene().constraints;
-    for (const std::size_t k : body_.constraints().own()) {
+    for (const std::size_t k : body_.constraints().moving()) {
       const ImposedPath& path = constraints[k].path;
       const double force = constraint_force(k);
       works_[k] += 0.5 * (reactions_[k] + force) * path.along(moved_[path.angle]);

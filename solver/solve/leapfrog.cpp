@@ -112,19 +112,20 @@ NodalField Leapfrog<Real>::free_velocities(bool with_pushes) const {
 
 template <class Real>
 double Leapfrog<Real>::energy_of_step() const {
-  const Rows<Real>&force = body_.free_forces(), &increment = body_.state().increment;
-  const double dt = clock_.step_size, c = clock_.damping;
-  Rows<Real> change(force.size()), momentum(force.size());  // of velocities, over the step
-  for (std::size_t r = 0; r < force.size(); ++r) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto w = static_cast<double>(inverse_masses_[r][i]);
-      if (!(w > 0.0)) continue;
-      const double v_half = static_cast<double>(increment[r][i]) / clock_.increment_time;
-      const double dv = -dt * (w * static_cast<double>(force[r][i]) + c * v_half) / (1.0 + 0.5 * c * dt);
-      change[r][i] = static_cast<Real>(dv);
-      momentum[r][i] = static_cast<Real>(dv / w);
+  const double dt = clock_.step_size, c = clock_.damping, share = dt / (1.0 + 0.5 * c * dt);
+  Rows<Real> change(inverse_masses_.size()), momentum(change.size());  // of velocities, over the step
+  const auto factor = static_cast<Real>(share), by_rate = static_cast<Real>(c / clock_.increment_time);
+  const Real *force = numbers_of(body_.free_forces()), *increment = numbers_of(body_.state().increment),
+             *inverse_mass = numbers_of(inverse_masses_);
+  Real *dv = numbers_of(change), *dp = numbers_of(momentum);
+  body_.layout().row_blocks.for_each([=](std::size_t first, std::size_t last) {
+#pragma omp simd
+    for (std::size_t k = first; k < last; ++k) {
+      const Real w = inverse_mass[k], damped = by_rate * increment[k];
+      dv[k] = factor * (w * force[k] + damped);
+      dp[k] = factor * (force[k] + (w > Real(0) ? damped / w : Real(0)));
     }
-  }
+  });
   return 0.125 * dot(momentum, change, body_.layout().row_blocks);
 }
 

@@ -19,8 +19,11 @@ RowConstraints<Real>::RowConstraints(const Scene& scene, const Layout& layout)
     const auto& [node, component, path, group] = scene.constraints[k];
     const auto row = at(layout.row_of_node[at(node)]);
     if (layout.owns(node)) own_.push_back(k);
+    if (layout.owns(node) && path.share != PathTerms{}) moving_.push_back(k);
     if (4 * row < local.first || 4 * row >= local.last) continue;
-    constraints_.push_back({k, row, at(component), rounded<Real>(path.share), path.angle});
+    constraints_.push_back({static_cast<std::uint32_t>(k),
+                            static_cast<std::uint32_t>(4 * row + at(component)), rounded<Real>(path.share),
+                            static_cast<std::uint32_t>(path.angle)});
   }
 }
 
@@ -28,16 +31,18 @@ template <class Real>
 void RowConstraints<Real>::impose(State<Real>& state, double factor) {
   for (std::size_t m = 0; m < terms_.size(); ++m)
     terms_[m] = rounded<Real>(path_terms(scene_.angles[m], factor));
+  Real *u = numbers_of(state.u), *increment = numbers_of(state.increment);
   for (const RowConstraint& constraint : constraints_) {
     const std::array<Real, 3>&share = constraint.share, &terms = terms_[constraint.angle];
-    constraint.impose(state, share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2]);
+    constraint.impose(u, increment, share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2]);
   }
 }
 
 template <class Real>
 void RowConstraints<Real>::impose(State<Real>& state, std::span<const double> displacements) const {
+  Real *u = numbers_of(state.u), *increment = numbers_of(state.increment);
   for (const RowConstraint& constraint : constraints_) {
-    constraint.impose(state, static_cast<Real>(displacements[constraint.index]));
+    constraint.impose(u, increment, static_cast<Real>(displacements[constraint.index]));
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,9 @@ class RowConstraints {
   /// The constraints of nodes whose rows this rank owns.
   const std::vector<std::size_t>& own() const { return own_; }
 
+  /// Those of them that move: the others do no work.
+  const std::vector<std::size_t>& moving() const { return moving_; }
+
   /// Sets constrained components to their paths at a load factor, and their increments to the change.
   void impose(State<Real>& state, double factor);
 
@@ -28,17 +32,16 @@ class RowConstraints {
 
   /// Sets constrained components to zero.
   void clear(Rows<Real>& rows) const {
-    for (const auto& constraint : constraints_) rows[constraint.row][constraint.component] = Real(0);
+    for (const auto& constraint : constraints_) numbers_of(rows)[constraint.place] = Real(0);
   }
 
   /// Moves forces (N) on constrained components to `reactions`, in the order of the scene's constraints, and
   /// clears the increments of these components.
   void take_reactions(Rows<Real>& force, Rows<Real>& increment, std::vector<double>& reactions) const {
+    Real *forces = numbers_of(force), *increments = numbers_of(increment);
     for (const auto& constraint : constraints_) {
-      Real& component = force[constraint.row][constraint.component];
-      reactions[constraint.index] = static_cast<double>(component);
-      component = Real(0);
-      increment[constraint.row][constraint.component] = Real(0);
+      reactions[constraint.index] = static_cast<double>(forces[constraint.place]);
+      forces[constraint.place] = increments[constraint.place] = Real(0);
     }
   }
 
@@ -50,16 +53,14 @@ class RowConstraints {
 
  private:
   struct RowConstraint {
-    std::size_t index;  // in the scene
-    std::size_t row;
-    std::size_t component;
+    std::uint32_t index;        // in the scene
+    std::uint32_t place;        // of the component among the numbers of all rows
     std::array<Real, 3> share;  // of the terms of its path, m
-    std::size_t angle;
+    std::uint32_t angle;
 
-    void impose(State<Real>& state, Real displacement) const {
-      Real& u = state.u[row][component];
-      state.increment[row][component] += displacement - u;
-      u = displacement;
+    void impose(Real* u, Real* increment, Real displacement) const {
+      increment[place] += displacement - u[place];
+      u[place] = displacement;
     }
   };
 
@@ -67,7 +68,7 @@ class RowConstraints {
   const Ranks& ranks_;
   std::vector<std::array<Real, 3>> terms_;  // of paths of each angle, at the last factor
   std::vector<RowConstraint> constraints_;  // of rows that this rank computes
-  std::vector<std::size_t> own_;
+  std::vector<std::size_t> own_, moving_;
 };
 
 extern template class RowConstraints<double>;
