@@ -12,17 +12,20 @@ using PathTerms = std::array<double, 3>;
 
 /// The terms at load factor f, for an angle in rad.
 inline PathTerms path_terms(double angle, double f) {
+  if (angle == 0.0) return {f, 0.0, 0.0};
   const double half = std::sin(0.5 * f * angle);
   return {f, 2.0 * half * half, std::sin(f * angle)};
 }
 
 /// Their first derivatives with respect to f.
 inline PathTerms path_rates(double angle, double f) {
+  if (angle == 0.0) return {1.0, 0.0, 0.0};
   return {1.0, angle * std::sin(f * angle), angle * std::cos(f * angle)};
 }
 
 /// Their second derivatives with respect to f.
 inline PathTerms path_accelerations(double angle, double f) {
+  if (angle == 0.0) return {};
   return {0.0, angle * angle * std::cos(f * angle), -angle * angle * std::sin(f * angle)};
 }
 

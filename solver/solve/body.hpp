@@ -61,12 +61,16 @@ class Body {
   /// Moves to displacements `target` (m); `impose` sets constrained components and tied nodes afterwards.
   void move_to(const Rows<Real>& target);
 
-  /// Sets constrained components to their paths at a load factor, and their increments to the change; from
-  /// now on loads follow this factor and `time` (s).
+  /// Sets constrained components that move to their paths at a load factor, and their increments to the
+  /// change; from now on loads follow this factor and `time` (s). In motions, held components stay where they
+  /// are.
   void impose(double factor, double time);
 
-  /// The same in a quasi-static answer, where time is the load factor.
-  void impose(double factor) { impose(factor, factor); }
+  /// The same in a quasi-static answer, where time is the load factor, from any displacements.
+  void impose(double factor) {
+    constraints_.hold(state_);
+    impose(factor, factor);
+  }
 
   /// Sets constrained components, in the order of the scene's constraints, to `displacements` (m) and their
   /// increments to the change; from now on loads follow this factor and `time` (s). Three more displacements

@@ -21,9 +21,13 @@ RowConstraints<Real>::RowConstraints(const Scene& scene, const Layout& layout)
     if (layout.owns(node)) own_.push_back(k);
     if (layout.owns(node) && path.share != PathTerms{}) moving_.push_back(k);
     if (4 * row < local.first || 4 * row >= local.last) continue;
-    constraints_.push_back({static_cast<std::uint32_t>(k),
-                            static_cast<std::uint32_t>(4 * row + at(component)), rounded<Real>(path.share),
-                            static_cast<std::uint32_t>(path.angle)});
+    const auto place = static_cast<std::uint32_t>(4 * row + at(component));
+    constraints_.push_back({static_cast<std::uint32_t>(k), place});
+    if (path.share == PathTerms{}) {
+      held_.push_back(place);
+    } else {
+      paths_.push_back({place, static_cast<std::uint32_t>(path.angle), rounded<Real>(path.share)});
+    }
   }
 }
 
@@ -31,19 +35,15 @@ template <class Real>
 void RowConstraints<Real>::impose(State<Real>& state, double factor) {
   for (std::size_t m = 0; m < terms_.size(); ++m)
     terms_[m] = rounded<Real>(path_terms(scene_.angles[m], factor));
-  Real *u = numbers_of(state.u), *increment = numbers_of(state.increment);
-  for (const RowConstraint& constraint : constraints_) {
-    const std::array<Real, 3>&share = constraint.share, &terms = terms_[constraint.angle];
-    constraint.impose(u, increment, share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2]);
+  for (const auto& [place, angle, share] : paths_) {
+    const std::array<Real, 3>& terms = terms_[angle];
+    set(state, place, share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2]);
   }
 }
 
 template <class Real>
 void RowConstraints<Real>::impose(State<Real>& state, std::span<const double> displacements) const {
-  Real *u = numbers_of(state.u), *increment = numbers_of(state.increment);
-  for (const RowConstraint& constraint : constraints_) {
-    constraint.impose(u, increment, static_cast<Real>(displacements[constraint.index]));
-  }
+  for (const auto& [index, place] : constraints_) set(state, place, static_cast<Real>(displacements[index]));
 }
 
 template <class Real>

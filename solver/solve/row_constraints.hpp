@@ -24,10 +24,15 @@ class RowConstraints {
   /// Those of them that move: the others do no work.
   const std::vector<std::size_t>& moving() const { return moving_; }
 
-  /// Sets constrained components to their paths at a load factor, and their increments to the change.
+  /// Sets components that are held to zero, and their increments to the change.
+  void hold(State<Real>& state) const {
+    for (const std::uint32_t place : held_) set(state, place, Real(0));
+  }
+
+  /// Sets components that move to their paths at a load factor, and their increments to the change.
   void impose(State<Real>& state, double factor);
 
-  /// The same for displacements (m) in the order of the scene's constraints.
+  /// The same for all components and displacements (m), in the order of the scene's constraints.
   void impose(State<Real>& state, std::span<const double> displacements) const;
 
   /// Sets constrained components to zero.
@@ -52,22 +57,28 @@ class RowConstraints {
   Reactions sums_over_sets(const std::vector<double>& numbers) const;
 
  private:
-  struct RowConstraint {
-    std::uint32_t index;        // in the scene
-    std::uint32_t place;        // of the component among the numbers of all rows
-    std::array<Real, 3> share;  // of the terms of its path, m
-    std::uint32_t angle;
-
-    void impose(Real* u, Real* increment, Real displacement) const {
-      increment[place] += displacement - u[place];
-      u[place] = displacement;
-    }
+  struct Component {
+    std::uint32_t index;  // in the scene
+    std::uint32_t place;  // among the numbers of all rows
   };
+  struct Moving {
+    std::uint32_t place;
+    std::uint32_t angle;
+    std::array<Real, 3> share;  // of the terms of its path, m
+  };
+
+  static void set(State<Real>& state, std::uint32_t place, Real displacement) {
+    Real& u = numbers_of(state.u)[place];
+    numbers_of(state.increment)[place] += displacement - u;
+    u = displacement;
+  }
 
   const Scene& scene_;
   const Ranks& ranks_;
   std::vector<std::array<Real, 3>> terms_;  // of paths of each angle, at the last factor
-  std::vector<RowConstraint> constraints_;  // of rows that this rank computes
+  std::vector<Component> constraints_;      // of rows that this rank computes
+  std::vector<Moving> paths_;               // of those that move
+  std::vector<std::uint32_t> held_;         // places of the others
   std::vector<std::size_t> own_, moving_;
 };
 

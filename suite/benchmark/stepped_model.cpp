@@ -67,7 +67,7 @@ class SteppedModelOf final : public SteppedModel {
 
   void step() override {
     if (resident_ != nullptr) return resident_->add(numbers_);
-    leapfrog_.take(step_size_, coefficients_, [this](Body<Real>& body) { body.impose(loading_); });
+    leapfrog_.take(step_size_, coefficients_, [this](Body<Real>& body) { body.impose(loading_, loading_); });
   }
 
   void finish() override {
