@@ -82,6 +82,12 @@ constexpr double rate_of_one_sided = 9.0;
 /// How a point touches in static equilibrium, in its rows; without friction it sticks.
 constexpr double not_at_all = 0.0, sticking = 1.0, slipping = 2.0;
 
+/// What evaluations in static equilibrium do not decide. All: which nodes touch, as at the last evaluation,
+/// and which of them may slip; fixed contact is a spring that pushes and pulls, so that forces are a smooth
+/// function of displacements. Friction: all nodes that touch stick, as before a load moves them; if they
+/// slipped along an obstacle that moved ahead of them, too deep in them, friction would throw them.
+enum class Fixing { none, all, friction };
+
 /// Whether a point that is fixed to touch so may stay, as it would touch if it were `free`. One that may slip
 /// sticks where friction holds it: if it always slipped, its force would turn around as its spring shortens.
 constexpr bool agrees(double fixed, double free) {
@@ -206,9 +212,8 @@ class ContactForce : public BodyForce {
   /// How the body touches it, from these rows.
   virtual Touch touch(const Row<double>* memory) const = 0;
 
-  /// Fixes which nodes touch it, as they did at the last evaluation, or ends that. A fixed contact is a
-  /// spring that pushes and pulls, so that forces are a smooth function of displacements.
-  virtual void fix_contact(bool /*fixed*/, Row<double>* /*memory*/) const {}
+  /// See Fixing.
+  virtual void fix_contact(Fixing /*fixing*/, Row<double>* /*memory*/) const {}
 
   /// Frees or attaches one node whose fixed contact was contrary at the last evaluation; false if there is
   /// none.

@@ -33,13 +33,17 @@ class KinematicContact final : public ObstacleContact {
       const int node = nodes_[k].node;
       Row<double>& increment = nodes.increment[node];
       const Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
-      const Gap gap = compute_gap();
+      Gap gap = compute_gap();
       if (passes(x, gap, motion)) memory.note_passed(node);
       if (gap.distance < 0.0) {
         const Vector start = first || known[3] > 0.0 ? gap_at(difference(x, motion)).normal
                                                      : Vector{known[0], known[1], known[2]};
         const Row<double>& w = nodes.inverse_masses[node];
-        const Vector change = correction(gap, direction(gap, start), motion, w);
+        const bool in_box = obstacle_.inside && obstacle_.shape == Obstacle::Shape::box;
+        const bool across_edge = in_box || dot(start, gap.normal) < same_side;
+        const Vector change = across_edge ? correction_at_edge(x, gap, motion, w)
+                                          : correction(gap.distance, start, gap.normal, motion, w);
+        if (across_edge) gap.normal = gap_at(sum(x, 1.0, change)).normal;
         Vector force{};
         for (std::size_t i = 0; i < 3; ++i) {
           if (!(w[i] > 0.0)) continue;
@@ -83,24 +87,42 @@ class KinematicContact final : public ObstacleContact {
     return make_kinematic_contact(std::move(nodes), obstacle_, shape_, path_);
   }
 
-  /// The direction of the force on a node: the normal where the step starts, as forces act there. Over the
-  /// steps before and after it, a node that slides along a curve moves at right angles to it: the normal at
-  /// the end would push it on with every step. Across an edge of the obstacle only the latter is of use.
-  static Vector direction(const Gap& end, const Vector& start) {
-    constexpr double least_cosine = 0.5;
-    return dot(start, end.normal) < least_cosine ? end.normal : start;
+  /// The least cosine between the normals where a step starts and where it ends, unless an edge of the
+  /// obstacle is between them.
+  static constexpr double same_side = 0.95;
+
+  /// Near an edge the nearest side of an obstacle need not be the one through which a node came: it stops at
+  /// that one, and if it is still inside, at the nearest. In a cavity the nearest place is right; in a box
+  /// always, whose sides are flat.
+  Vector correction_at_edge(const Vector& x, const Gap& gap, const Vector& motion,
+                            const Row<double>& w) const {
+    if (obstacle_.inside) return correction(gap.distance, gap.normal, gap.normal, motion, w);
+    const Gap start = gap_at(difference(x, motion));
+    Vector change = correction(std::min(start.distance + dot(motion, start.normal), 0.0), start.normal,
+                               start.normal, motion, w);
+    constexpr int most_sides = 3;
+    for (int side = 1; side < most_sides; ++side) {
+      const Gap left = gap_at(sum(x, 1.0, change));
+      if (left.distance >= 0.0) break;
+      change =
+          sum(change, 1.0, correction(left.distance, left.normal, left.normal, sum(motion, 1.0, change), w));
+    }
+    return change;
   }
 
-  /// The change (m) of the motion of a node in a step that brings it to the surface along a direction, with
-  /// friction; zero where a component is constrained (w = 0).
-  Vector correction(const Gap& gap, const Vector& direction, const Vector& motion,
+  /// The change (m) of the motion of a node in a step that brings it from a distance (m, negative) to the
+  /// surface with a normal, with friction; zero where a component is constrained (w = 0). The force has the
+  /// direction of the normal where the step starts, as it acts there: over the steps before and after it, a
+  /// node that slides along a curve moves at right angles to it. The normal at the end would push it on with
+  /// every step.
+  Vector correction(double distance, const Vector& direction, const Vector& normal, const Vector& motion,
                     const Row<double>& w) const {
     Vector free = direction;
     for (std::size_t i = 0; i < 3; ++i) free[i] = w[i] > 0.0 ? free[i] : 0.0;
-    const double share = dot(free, gap.normal);
+    const double share = dot(free, normal);
     constexpr double least_share = 1e-6;
     if (share < least_share) return {};
-    const double outwards = -gap.distance / share;
+    const double outwards = -distance / share;
     Vector change = sum({}, outwards, free);
     if (obstacle_.friction == 0.0) return change;
     const Vector along = sum(motion, -dot(motion, direction), direction);

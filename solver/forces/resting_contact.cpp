@@ -29,15 +29,16 @@ class RestingContact final : public ObstacleContact {
     memory.clear_forces();
     memory.moves = {{moved[0], moved[1], moved[2], 0.0}};
     memory.sums[2] = 0.0;
-    const bool fixed = is_fixed(rows);
+    const Fixing fixing = fixing_of(rows);
     for_each_gap(moved, u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       const auto& [node, X, stiffness] = nodes_[k];
       Row<double>* of_node = memory.others + by_node() * k;
       const double constant = of_node[0][2], depth = -gap.distance;
       Vector along = rubs() ? extension(k, x, gap, of_node) : Vector{};
       const double most = most_extension(gap, of_node), size = length(along);
-      const double free = depth <= -constant ? not_at_all : size > most ? slipping : sticking;
-      const double touches = fixed ? of_node[0][3] : free;
+      const bool slips = size > most && fixing != Fixing::friction;
+      const double free = depth <= -constant ? not_at_all : slips ? slipping : sticking;
+      const double touches = fixing == Fixing::all ? of_node[0][3] : free;
       const bool is_contrary = !agrees(touches, free);
       if (is_contrary) ++memory.sums[2];
       of_node[0] = {{is_contrary ? 1.0 + free : 0.0, depth, constant, touches}};
@@ -102,8 +103,8 @@ class RestingContact final : public ObstacleContact {
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
                  std::vector<LoadRates>& /*rates*/) const override {}
 
-  void fix_contact(bool fixed, Row<double>* memory) const override {
-    ContactMemory(memory).sums[3] = fixed ? 1.0 : 0.0;
+  void fix_contact(Fixing fixing, Row<double>* memory) const override {
+    ContactMemory(memory).sums[3] = static_cast<double>(fixing);
   }
 
   bool correct_contact(Row<double>* memory) const override {
@@ -141,7 +142,9 @@ class RestingContact final : public ObstacleContact {
       const Row<double>* of_node = memory + ContactMemory::own + by_node() * k;
       const Vector along = extension(k, x, gap, of_node);
       const double most = most_extension(gap, of_node);
-      const bool slips = length(along) > most && !(is_fixed(memory) && of_node[0][3] == sticking);
+      const Fixing fixing = fixing_of(memory);
+      const bool may_slip = fixing == Fixing::none || (fixing == Fixing::all && of_node[0][3] == slipping);
+      const bool slips = may_slip && length(along) > most;
       add_with_friction(spring, stiffness, gap.normal, along, most, slips, obstacle_.friction, springs);
     });
   }
@@ -166,10 +169,11 @@ class RestingContact final : public ObstacleContact {
   /// Whether a node is linearized as touching: unless it is fixed, also where body and obstacle just fit.
   bool touches(std::size_t k, const Gap& gap, const Row<double>* memory) const {
     const Row<double>* of_node = memory + ContactMemory::own + by_node() * k;
-    return is_fixed(memory) ? of_node[0][3] != 0.0 : gap.distance <= of_node[0][2] + rounding_;
+    return fixing_of(memory) == Fixing::all ? of_node[0][3] != 0.0
+                                            : gap.distance <= of_node[0][2] + rounding_;
   }
 
-  static bool is_fixed(const Row<double>* memory) { return memory[2][3] != 0.0; }
+  static Fixing fixing_of(const Row<double>* memory) { return static_cast<Fixing>(memory[2][3]); }
 
   std::shared_ptr<const BodyForce> on(std::vector<TouchingNode> nodes) const override {
     return make_resting_contact(std::move(nodes), obstacle_, shape_, path_);

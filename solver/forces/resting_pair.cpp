@@ -62,7 +62,7 @@ class RestingPair final : public SurfacePair {
   void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,
                              double& sum) const override {
     Rows<double> rows(memory, memory + this->memory());
-    fix_contact(false, rows.data());
+    fix_contact(Fixing::none, rows.data());
     ContactMemory copy(rows.data());
     for_each_resting(friction(factors), u, copy, 0.0, [&](const Resting& one) {
       const double depth = one.constant - one.plane.gap;
@@ -92,6 +92,12 @@ class RestingPair final : public SurfacePair {
   }
 
   void end_level(Factors factors, NodalRows u, Row<double>* rows) const override {
+    ContactMemory memory(rows);
+    for_each_point(memory, [&](const Side& side, std::size_t k, const Row<double>* of_point) {
+      if (of_point[0][strength] == not_at_all || of_point[1][contrary] != 0.0) return;
+      if (of_point[1][depth_now] < given_.reach) return;
+      memory.note_passed(node_of(surfaces_[side.from], surfaces_[side.from].points()[k]));
+    });
     if (rubs()) note_places(friction(factors), u, rows);
   }
 
@@ -109,8 +115,8 @@ class RestingPair final : public SurfacePair {
   void add_rates(Factors /*largest*/, const std::vector<double>& /*masses*/,
                  std::vector<LoadRates>& /*rates*/) const override {}
 
-  void fix_contact(bool fixed, Row<double>* memory) const override {
-    ContactMemory(memory).sums[3] = fixed ? 1.0 : 0.0;
+  void fix_contact(Fixing fixing, Row<double>* memory) const override {
+    ContactMemory(memory).sums[3] = fixing == Fixing::all ? 1.0 : 0.0;
   }
 
   bool correct_contact(Row<double>* rows) const override {
@@ -264,8 +270,8 @@ class RestingPair final : public SurfacePair {
   void for_each_resting(double friction_now, NodalRows u, ContactMemory& memory, double margin,
                         const Use& use) const {
     begin(memory);
-    const double range = std::max(given_.reach, move(u, memory).largest_relative()),
-                 way = memory.others[0][way_so_far];
+    move(u, memory);
+    const double way = memory.others[0][way_so_far];
     const bool fixed = memory.sums[3] != 0.0;
     const bool anew = !fixed && std::exchange(memory.others[0][chooses_again], 0.0) != 0.0;
     const double kept = anew ? clearly_beyond : overhang;
@@ -284,11 +290,11 @@ class RestingPair final : public SurfacePair {
       auto of_face = static_cast<std::size_t>(of_point[1][triangle]);
       if (touched) plane = onto.plane_at(face, of_face, x, of_onto);
       bool inside = touched && plane.gap <= farthest, moved = false;
-      if (!touched || plane.least < -kept) {
+      if (!touched || plane.least < -kept || plane.gap < -given_.reach) {
         for (std::size_t s = 0; s < surfaces_.size() && !fits; ++s) surfaces_[s].fit(of_surface(memory, s));
         fits = true;
-        const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), range,
-                                              side.neighbours[k], of_onto);
+        const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from),
+                                              given_.reach, side.neighbours[k], of_onto);
         of_point[0][clear_until] = foot.behind ? way : way + std::max(foot.distance() - constant, 0.0);
         moved = touched && (foot.face != face || foot.triangle != of_face);
         inside = false;

@@ -90,6 +90,9 @@ class SurfacePair : public ContactForce, public std::enable_shared_from_this<Sur
     return of_surface(memory, s) + surfaces_[s].rows();
   }
 
+  /// A node with the largest weight.
+  static int node_of(const MovingSurface& surface, const SurfacePoint& point);
+
   /// Coulomb's coefficient now. Throws InputError where the curve makes it negative.
   double friction(Factors factors) const;
 
@@ -105,9 +108,6 @@ class SurfacePair : public ContactForce, public std::enable_shared_from_this<Sur
   std::vector<Side> sides_;
 
  private:
-  /// A node with the largest weight.
-  static int node_of(const MovingSurface& surface, const SurfacePoint& point);
-
   /// Places the rows in the memory.
   void lay_out(std::size_t by_node);
 

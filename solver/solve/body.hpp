@@ -128,7 +128,7 @@ class Body {
   }
 
   /// See Loads::fix_contact.
-  void fix_contact(bool fixed) { loads_.fix_contact(fixed); }
+  void fix_contact(Fixing fixing) { loads_.fix_contact(fixing); }
 
   /// See Loads::augment_contact.
   bool augment_contact(bool augmented) { return loads_.augment_contact(augmented); }

@@ -90,7 +90,7 @@ void Equilibrium<Real>::start(Effort effort) {
   leaves_saddle_ = false;
   convex_ = true;
   returns_ = 0;
-  body().fix_contact(false);
+  body().fix_contact(Fixing::none);
   begin();
   mixed_.evaluate();
   first_ = mixed_.norm();
@@ -118,7 +118,7 @@ bool Equilibrium<Real>::step() {
 template <class Real>
 void Equilibrium<Real>::begin_acceleration() {
   stage_ = Stage::acceleration;
-  body().fix_contact(true);
+  body().fix_contact(Fixing::all);
   contact_ = {mixed_.norm(), updated_share};
   acceleration_.clear();
   norms_.clear();
@@ -164,11 +164,11 @@ void Equilibrium<Real>::update_contact() {
   if (contact_.failed > most_failed_updates) {
     body().correct_contact();
   } else {
-    body().fix_contact(false);
+    body().fix_contact(Fixing::none);
   }
   mixed_.evaluate();
   if (stage_ != Stage::acceleration) return;
-  body().fix_contact(true);
+  body().fix_contact(Fixing::all);
   mixed_.linearize_contact();
   mixed_.set_drags();
   contact_.norm = mixed_.norm();
@@ -227,7 +227,7 @@ bool Equilibrium<Real>::linearized_step() {
 template <class Real>
 void Equilibrium<Real>::begin_multipliers() {
   stage_ = Stage::multipliers;
-  body().fix_contact(false);
+  body().fix_contact(Fixing::none);
   go_to(best_);
   mixed_.evaluate();
   progress_ = {mixed_.norm()};
@@ -282,7 +282,7 @@ template <class Real>
 bool Equilibrium<Real>::leave(const std::vector<MixedVector>& falling, bool slowly) {
   effort_ = Effort::full;
   returns_ = 0;
-  body().fix_contact(false);
+  body().fix_contact(Fixing::none);
   leaves_saddle_ = true;
   convex_ = false;
   using Multipliers = typename MixedBody<Real>::Multipliers;
@@ -343,7 +343,7 @@ void Equilibrium<Real>::go_to(const Point& point) {
 /// Goes to the point of lower potential: the start of the search, or the best since.
 template <class Real>
 void Equilibrium<Real>::go_to_lower() {
-  body().fix_contact(false);
+  body().fix_contact(Fixing::none);
   go_to(potential_at(best_) < potential_at(start_) ? best_ : start_);
   mixed_.evaluate();
 }
@@ -357,7 +357,7 @@ double Equilibrium<Real>::potential_at(const Point& point) {
 
 template <class Real>
 double Equilibrium<Real>::extend(double load, double most) {
-  body().fix_contact(false);
+  body().fix_contact(Fixing::friction);
   const Rows<Real> before = body().state().u;
   const double load_before = body().load_factor();
   begin();
@@ -384,6 +384,7 @@ double Equilibrium<Real>::extend(double load, double most) {
   body().move_to(before);
   mixed_.move(x, share);
   body().impose(reached);
+  body().fix_contact(Fixing::none);
   return reached;
 }
 

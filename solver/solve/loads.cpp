@@ -251,9 +251,9 @@ void Loads<Real>::slide(const Rows<Real>& before, Rows<Real>& u) const {
 }
 
 template <class Real>
-void Loads<Real>::fix_contact(bool fixed) {
+void Loads<Real>::fix_contact(Fixing fixing) {
   for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c]->fix_contact(fixed, memory_.data() + memory_of_[c]);
+    contacts_[c]->fix_contact(fixing, memory_.data() + memory_of_[c]);
 }
 
 template <class Real>

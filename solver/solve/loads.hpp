@@ -60,7 +60,7 @@ class Loads {
   void begin_again(const Reactions& forces, const Reactions& moments);
 
   /// See ContactForce::fix_contact.
-  void fix_contact(bool fixed);
+  void fix_contact(Fixing fixing);
 
   /// See ContactForce::augment; of all obstacles.
   bool augment_contact(bool augmented);
