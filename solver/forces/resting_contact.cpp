@@ -11,7 +11,7 @@ namespace {
 /// the depth of its constant force, m; how it touches; and its place at the last load level, in the frame of
 /// the obstacle, m, and whether that is known. With friction also two rows of that level: from where the node
 /// slips, in the frame of the obstacle and relative to the undeformed body, m; the extension of its spring
-/// along the obstacle, m.
+/// along the obstacle, m. And one for that extension when nothing was fixed, m.
 class RestingContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
@@ -38,7 +38,9 @@ class RestingContact final : public ObstacleContact {
       const double most = most_extension(gap, of_node), size = length(along);
       const bool slips = size > most && fixing != Fixing::friction;
       const double free = depth <= -constant ? not_at_all : slips ? slipping : sticking;
-      const double touches = fixing == Fixing::all ? of_node[0][3] : free;
+      double touches = fixing == Fixing::all ? of_node[0][3] : free;
+      if (rubs() && fixing == Fixing::none) of_node[4] = {{along[0], along[1], along[2], 0.0}};
+      if (touches == slipping && slips && turns(along, of_node[4])) touches = sticking;
       const bool is_contrary = !agrees(touches, free);
       if (is_contrary) ++memory.sums[2];
       of_node[0] = {{is_contrary ? 1.0 + free : 0.0, depth, constant, touches}};
@@ -164,7 +166,7 @@ class RestingContact final : public ObstacleContact {
   }
 
  private:
-  std::size_t by_node() const { return rubs() ? 4 : 2; }
+  std::size_t by_node() const { return rubs() ? 5 : 2; }
 
   /// Whether a node is linearized as touching: unless it is fixed, also where body and obstacle just fit.
   bool touches(std::size_t k, const Gap& gap, const Row<double>* memory) const {
@@ -188,6 +190,11 @@ class RestingContact final : public ObstacleContact {
     const Row<double>& from = of_node[2];
     const Vector place = sum(undeformed(k), 1.0, {from[0], from[1], from[2]});
     return way_along(difference(x, place), gap.normal, gap.distance, gap_at(place).distance);
+  }
+
+  /// Whether a node that slips would now slip back: friction that stops it would push it to and fro.
+  static bool turns(const Vector& along, const Row<double>& before) {
+    return along[0] * before[0] + along[1] * before[1] + along[2] * before[2] < 0.0;
   }
 
   /// The largest extension (m) that friction allows.
