@@ -282,8 +282,11 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
     fmt::print(
         stderr,
         "warning: energy drifts: {:.2g} % of the largest was {}; take a smaller step (step_fraction) or "
-        "another method\n",
-        100.0 * std::abs(unexplained), unexplained > 0.0 ? "gained" : "lost");
+        "another method{}\n",
+        100.0 * std::abs(unexplained), unexplained > 0.0 ? "gained" : "lost",
+        damping > 0.0
+            ? "; with damping, check_interval = 1 tells whether only its losses were summed too coarsely"
+            : "");
   }
 }
 

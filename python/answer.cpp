@@ -150,7 +150,6 @@ class Answer : public NeverUnmade {
     add("contact_energy", &HistoryRow::contact);
     add("friction_loss", &HistoryRow::friction);
     add("depth", &HistoryRow::depth);
-    add("damping_loss", &HistoryRow::damping);
     return columns;
   }
 

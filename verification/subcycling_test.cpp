@@ -386,7 +386,7 @@ TEST(Subcycling, refuses_what_depends_on_more_than_displacements) {
       .file = "", .points = scene.mesh.points, .boundary = scene.boundary, .sets = sets, .masses = masses};
   Pressure{"all", 1.0}.resolve(resolver);
   scene.forces = resolver.all();
-  EXPECT_NE(refusal(scene, "tl-perturbation").find("pressure acts on node"), std::string::npos);
+  EXPECT_NE(refusal(scene, "tl-perturbation").find("[[pressure]] acts on node"), std::string::npos);
   description.materials.front().law = Viscoelastic<NeoHookean>{soft};
   EXPECT_NE(refusal(scene_on(refined, description), "tl-perturbation").find("subcycles"), std::string::npos);
 }

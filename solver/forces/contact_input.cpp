@@ -48,7 +48,10 @@ int node_within_body(const ForceResolver& resolver, const std::vector<Quadrilate
   std::vector<bool> has_other(resolver.points.size(), false);
   for (const int node : nodes_of(other)) has_other[at(bodies.least(node))] = true;
   constexpr double just_within = 1e-3;
-  const auto points = points_within(resolver.points, resolver.cells, nodes_of(surface), just_within);
+  constexpr double deep_within = 0.3;  // edges of curved surfaces may cut into each other
+  auto points = points_within(resolver.points, resolver.cells, nodes_of(surface), just_within);
+  const auto along = points_along_edges(resolver.points, resolver.cells, nodes_of(surface), deep_within);
+  points.insert(points.end(), along.begin(), along.end());
   for (const auto& [point, element] : overlaps(resolver.points, resolver.cells, points)) {
     if (has_other[at(bodies.least(resolver.cells[element][0]))]) return point.node;
   }

@@ -26,7 +26,7 @@ struct ContactScale {
 double winding_number(const Vector& x, const std::vector<Quadrilateral>& faces, const NodalField& points);
 
 /// A node of a surface that lies within a body with faces of the other surface, which may be its own; -1:
-/// none. Nodes are taken just within their own elements, so that bodies may touch.
+/// none. Nodes are taken just within their own elements, so that bodies may touch; also edges, deeper within.
 int node_within_body(const ForceResolver& resolver, const std::vector<Quadrilateral>& surface,
                      const std::vector<Quadrilateral>& other);
 

@@ -20,7 +20,7 @@ std::vector<Quadrilateral> ForceResolver::faces(std::string_view table, const st
   auto within = faces_within(boundary, all);
   if (within.empty()) {
     throw InputError(fmt::format(
-        "{}: {}.{} = '{}' has no boundary face among its {} nodes; a {} acts on faces of the boundary "
+        "{}: {}.{} = '{}' has no boundary face among its {} nodes; [[{}]] acts on faces of the boundary "
         "whose four nodes all lie in its set",
         file, table, key, set, all.size(), table));
   }

@@ -52,11 +52,9 @@ Vector normal_of(const std::array<Vector, 4>& x) {
   return cross(difference(x[2], x[0]), difference(x[3], x[1]));
 }
 
-/// Whether a face opposes the normal of a point: not the side of a body on which the point lies, which may
-/// lean towards it, but the faces beside a sharp edge, whose normals are mean values, do.
-bool opposes(const Vector& of_face, const Vector& of_point) {
-  constexpr double least_cosine = 0.3;
-  return dot(of_face, of_point) < -least_cosine * length(of_face) * length(of_point);
+/// Whether the angle between the normals of a face and of a point has at most this cosine.
+bool opposes(const Vector& of_face, const Vector& of_point, double cosine) {
+  return dot(of_face, of_point) < cosine * length(of_face) * length(of_point);
 }
 
 /// The k-th of the four triangles of a face.
@@ -142,12 +140,12 @@ std::array<Vector, 4> MovingSurface::corners_now(int face, const Row<double>* ro
   return x;
 }
 
-SurfaceFoot MovingSurface::closest(const Vector& x, const Vector& normal, double reach,
+SurfaceFoot MovingSurface::closest(const Vector& x, const Vector& normal, double cosine, double reach,
                                    const std::vector<int>& except, const Row<double>* rows) const {
   SurfaceFoot closest{.square = reach * reach};
   tree_.search(x, rows + 2 * nodes_.size(), closest.square, [&](int face) {
     const auto corners = corners_now(face, rows);
-    if (!opposes(normal_of(corners), normal) || std::ranges::binary_search(except, face)) return;
+    if (!opposes(normal_of(corners), normal, cosine) || std::ranges::binary_search(except, face)) return;
     const auto compare = [&](const std::array<Vector, 3>& triangle, const Vector& weights, std::size_t k) {
       const Vector there = point_of(triangle, weights), from = difference(x, there);
       const double square = dot(from, from);

@@ -86,10 +86,11 @@ class MovingSurface {
   /// The corners of a face.
   const Quadrilateral& corners(int face) const { return faces_[at(face)]; }
 
-  /// The closest point to x (m) within `reach` (m) on faces that oppose a normal, except those of a sorted
-  /// list. An open surface is extended beyond its rim in the planes of its faces. Allocates nothing.
-  SurfaceFoot closest(const Vector& x, const Vector& normal, double reach, const std::vector<int>& except,
-                      const Row<double>* rows) const;
+  /// The closest point to x (m) within `reach` (m) on faces whose normal is so far from a normal that the
+  /// cosine of their angle is at most `cosine`, except those of a sorted list. An open surface is extended
+  /// beyond its rim in the planes of its faces. Allocates nothing.
+  SurfaceFoot closest(const Vector& x, const Vector& normal, double cosine, double reach,
+                      const std::vector<int>& except, const Row<double>* rows) const;
 
   /// The plane of a triangle of a face.
   struct Plane {

@@ -9,6 +9,10 @@ namespace {
 /// contact is augmented, those that are clearly beyond choose the nearest triangle.
 constexpr double overhang = 0.1, clearly_beyond = 1e-3;
 
+/// The largest cosine of the normals of a point and of a face that it touches. Sides of a body may lean over
+/// points below its edge by more than a right angle; beside a sharp edge, normals are mean values.
+constexpr double opposed = -0.3;
+
 /// Points that just fit are linearized as touching, up to this share of the shortest edge.
 constexpr double just_fits = 1e-6;
 
@@ -227,8 +231,8 @@ class RestingPair final : public SurfacePair {
       const Row<double>*of_from = of_surface(memory, side.from), *of_onto = of_surface(memory, side.onto);
       const SurfacePoint& point = from.points()[k];
       const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
-      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), given_.reach,
-                                            side.neighbours[k], of_onto);
+      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), opposed,
+                                            given_.reach, side.neighbours[k], of_onto);
       memory.sums[0] += stiffness_of(side, k) * lost(of_point[stretch]);
       of_point[stretch] = {};
       of_point[place] = {{-1.0, 0.0, 0.0, 0.0}};
@@ -293,7 +297,7 @@ class RestingPair final : public SurfacePair {
       if (!touched || plane.least < -kept || plane.gap < -given_.reach) {
         for (std::size_t s = 0; s < surfaces_.size() && !fits; ++s) surfaces_[s].fit(of_surface(memory, s));
         fits = true;
-        const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from),
+        const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), opposed,
                                               given_.reach, side.neighbours[k], of_onto);
         of_point[0][clear_until] = foot.behind ? way : way + std::max(foot.distance() - constant, 0.0);
         moved = touched && (foot.face != face || foot.triangle != of_face);

@@ -134,6 +134,7 @@ void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, 
                                  const LetGo& let_go) const {
   const Motions motions = move(u, memory);
   const double way = memory.others[0][way_so_far];
+  constexpr double opposed = -0.1;  // see closest; sides of bodies may lean over points beside them
   // Within one step, points of fast bodies may pass deeper than the reach.
   const double range = std::max(given_.reach, motions.largest_relative());
   bool fits = false;
@@ -149,8 +150,8 @@ void SurfacePair::for_each_touch(const Displacements& u, ContactMemory& memory, 
       }
       const SurfacePoint& point = from.points()[k];
       const Vector x = MovingSurface::position(point.nodes, point.weights, of_from);
-      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), range,
-                                            side.neighbours[k], of_onto);
+      const SurfaceFoot foot = onto.closest(x, from.normal(point.nodes, point.weights, of_from), opposed,
+                                            range, side.neighbours[k], of_onto);
       one[clear_until] = foot.behind ? way : way + foot.distance();
       const bool is_deeper = foot.behind && foot.distance() > given_.reach;
       if (is_deeper) memory.note_passed(node_of(from, point));

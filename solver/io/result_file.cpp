@@ -130,7 +130,6 @@ void ResultWriter::write_history() {
   column("residual", "-", &HistoryRow::residual);
   column("step_size", model_.scene().settings.quasi_static ? "ramp" : "s", &HistoryRow::step_size);
   column("adaption_energy", "J", &HistoryRow::adaption);
-  column("damping_loss", "J", &HistoryRow::damping);
   if (!contacts_of(model_.scene().forces).empty()) {
     column("contact_energy", "J", &HistoryRow::contact);
     column("friction_loss", "J", &HistoryRow::friction);

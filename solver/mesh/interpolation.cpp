@@ -7,8 +7,10 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "base/error.hpp"
+#include "mesh/edges.hpp"
 #include "mesh/hexahedron.hpp"
 
 namespace sandglass {
@@ -166,6 +168,28 @@ std::vector<PointWithin> points_within(const NodalField& points, std::span<const
     }
   }
   return within;
+}
+
+std::vector<PointWithin> points_along_edges(const NodalField& points, std::span<const Hexahedron> cells,
+                                            std::span<const int> nodes, double share) {
+  std::vector<bool> is_one(points.size(), false);
+  for (const int node : nodes) is_one[at(node)] = true;
+  std::set<std::pair<int, int>> done;
+  std::vector<PointWithin> along;
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    const Vector middle = mean_at(cells[e], points);
+    for (const auto& [i, j] : hexahedron_edges) {
+      const auto [a, b] = std::minmax(cells[e][i], cells[e][j]);
+      if (!is_one[at(a)] || !is_one[at(b)] || !done.emplace(a, b).second) continue;
+      constexpr int parts = 8;
+      for (int k = 0; k < parts; ++k) {
+        const double t = (k + 0.5) / parts;
+        const Vector on_edge = sum(points[at(a)], t, difference(points[at(b)], points[at(a)]));
+        along.push_back({t < 0.5 ? a : b, e, sum(on_edge, share, difference(middle, on_edge))});
+      }
+    }
+  }
+  return along;
 }
 
 std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& points,

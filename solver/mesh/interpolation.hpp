@@ -36,6 +36,10 @@ struct PointWithin {
 std::vector<PointWithin> points_within(const NodalField& points, std::span<const Hexahedron> cells,
                                        std::span<const int> nodes, double share);
 
+/// The same for places on the edges between these nodes: the middles of some equal parts of each edge.
+std::vector<PointWithin> points_along_edges(const NodalField& points, std::span<const Hexahedron> cells,
+                                            std::span<const int> nodes, double share);
+
 /// The points that are also within other elements, with each of these: there the mesh overlaps itself.
 std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& points,
                                                           std::span<const Hexahedron> cells,

@@ -121,7 +121,9 @@ void require_apart(const Scene& scene, const NodalField& u) {
     constexpr double deep_within = 0.3;
     const auto overlaps_of = [&](const NodalField& points) {
       std::set<std::pair<int, std::size_t>> found;
-      const auto within = points_within(points, mesh.cells, contact->nodes(), deep_within);
+      auto within = points_within(points, mesh.cells, contact->nodes(), deep_within);
+      const auto along = points_along_edges(points, mesh.cells, contact->nodes(), deep_within);
+      within.insert(within.end(), along.begin(), along.end());
       for (const auto& [point, element] : overlaps(points, mesh.cells, within))
         found.emplace(point.node, element);
       return found;
@@ -135,7 +137,8 @@ void require_apart(const Scene& scene, const NodalField& u) {
       if (before.contains({node, element})) continue;
       const Vector& X = mesh.points[at(node)];
       throw ComputationError(fmt::format(
-          "contact '{}': in the equilibrium found, node {}, undeformed at ({:.6g}, {:.6g}, {:.6g}) m, is "
+          "contact '{}': in the equilibrium found, node {} or an edge of it, undeformed at ({:.6g}, {:.6g}, "
+          "{:.6g}) m, is "
           "within element {}: bodies passed through each other\n"
           "remedy: impose less displacement, or more levels",
           contact->touch(Rows<double>(contact->memory()).data()).name, node, X[0], X[1], X[2], element));

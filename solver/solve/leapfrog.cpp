@@ -56,11 +56,14 @@ StableStep Leapfrog<Real>::stable_step(const Model& model, double given_step) {
     return subcycling->choose_substeps(stable_steps(model, std::move(bounds)), given_step);
   }
   StableStep stable = smallest_of(*body_.layout().team.ranks, sandglass::stable_step(model, bounds));
-  if (model.scene().settings.dynamics.body_frequency == 0) return stable;
-  const double square =
-      largest_frequency_.square(model.scene().mesh, body_.elements(), body_.ties(), inverse_masses_,
-                                body_.state(), bounds, std::pow(2.0 / stable.step, 2));
-  if (std::isfinite(square)) stable.step = std::max(stable.step, stable_step_of(model, square));
+  if (model.scene().settings.dynamics.body_frequency != 0) {
+    const double square =
+        largest_frequency_.square(model.scene().mesh, body_.elements(), body_.ties(), inverse_masses_,
+                                  body_.state(), bounds, std::pow(2.0 / stable.step, 2));
+    if (std::isfinite(square)) stable.step = std::max(stable.step, stable_step_of(model, square));
+  }
+  // With longer steps, velocities would overshoot; beyond 2 / damping they would change their sign.
+  if (clock_.damping > 0.0) stable.step = std::min(stable.step, 1.0 / clock_.damping);
   return stable;
 }
 

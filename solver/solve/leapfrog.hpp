@@ -55,8 +55,8 @@ class Leapfrog {
   /// See Body::subcycle.
   void subcycle(const Model& model) { body_.subcycle(model, inverse_masses_); }
 
-  /// The stable step, by bounds of elements or, where the case says so, by the largest frequency of the body.
-  /// `given_step` (s) is the one that a user demands, or 0.
+  /// The stable step, by bounds of elements or, where the case says so, by the largest frequency of the body;
+  /// at most 1 / damping. `given_step` (s) is the one that a user demands, or 0.
   StableStep stable_step(const Model& model, double given_step = 0.0);
 
   double time() const { return clock_.time; }  ///< s, of the displacements

@@ -117,7 +117,7 @@ void require_bare_faces(const Scene& scene, const FreeNodes& free, const std::ve
     free.for_each(force->nodes(), [&](int n) {
       if (!is_small[at(n)]) return;
       throw InputError(
-          fmt::format("dynamics.subcycles: a {} acts on node {}, which belongs to small elements; "
+          fmt::format("dynamics.subcycles: [[{}]] acts on node {}, which belongs to small elements; "
                       "allowed: 1, or a mesh that is refined elsewhere",
                       force->traits().name, n));
     });
