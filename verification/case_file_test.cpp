@@ -214,7 +214,7 @@ void change(Value& value) {
   } else if constexpr (requires { Value::value_type::parameters(); }) {
     value.emplace_back();
   } else {
-    if (std::isnan(value.back())) value.back() = 0;  // was not given
+    for (auto& one : value) one = std::isnan(one) ? 0 : one;  // was not given
     value.back() += 1;
   }
 }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "mesh/hash.hpp"
@@ -125,6 +126,8 @@ std::string described(const Force& force, bool in_motion) {
     } else if constexpr (std::is_enum_v<Value>) {
       if (value != Force{}.*(parameter.member))
         others += fmt::format("{} {}", parameter.name, text_of(value));
+    } else if constexpr (std::is_same_v<Value, Vector>) {
+      values.push_back(fmt::format("{}", std::isnan(value[0]) ? Vector{} : value));  // not given
     } else {
       values.push_back(fmt::format("{}", value));
     }
