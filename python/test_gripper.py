@@ -18,10 +18,13 @@ def gripped_block(method, n=6, left=None, right=None):
     """
     points, cells, node = lattice(*[np.linspace(0, EDGE, n + 1)] * 3)
     sets = {"west": node[:, :, 0].ravel(), "east": node[:, :, n].ravel(), "foot": node[0].ravel()}
+    floor = {"shape": "plane", "point": (0, 0, 0), "method": method}
     jaw = {"shape": "plane", "friction": FRICTION, "method": method}
     loads = [
-        sg.Obstacle(name="floor", set="foot", shape="plane", normal=(0, 0, 1), method=method),
-        sg.Obstacle(name="left", set="west", normal=(1, 0, 0), **jaw, **(left or {})),
+        sg.Obstacle(name="floor", set="foot", normal=(0, 0, 1), **floor),
+        sg.Obstacle(
+            name="left", set="west", point=(0, 0, 0), normal=(1, 0, 0), **jaw, **(left or {})
+        ),
         sg.Obstacle(
             name="right", set="east", point=(EDGE, 0, 0), normal=(-1, 0, 0), **jaw, **(right or {})
         ),
