@@ -196,10 +196,12 @@ std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& poin
                                                           std::span<const Hexahedron> cells,
                                                           const std::vector<PointWithin>& some) {
   const ElementGrid grid(points, cells);
+  std::vector<std::array<Vector, 2>> boxes;
+  for (const Hexahedron& cell : cells) boxes.push_back(bounding_box(values_at(cell, points)));
   std::vector<std::pair<PointWithin, std::size_t>> found;
   for (const PointWithin& one : some) {
     for (const std::size_t e : grid.near(one.X)) {
-      const std::array<Vector, 2> box = bounding_box(values_at(cells[e], points));
+      const auto& box = boxes[e];
       const auto beyond = [&](std::size_t i) { return one.X[i] < box[0][i] || one.X[i] > box[1][i]; };
       if (e == one.element || beyond(0) || beyond(1) || beyond(2)) continue;
       const auto xi = parent_point(gather(points, cells[e]), one.X);
