@@ -269,11 +269,16 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
   }
   const double depth = history.largest_depth(settings.quasi_static) / shortest_edge(model.scene().mesh);
   if (depth > much_depth) {
+    const bool moves_nodes = std::ranges::any_of(contacts_of(model.scene().forces),
+                                                 [](const auto* contact) { return contact->moves_nodes(); });
     fmt::print(
         stderr,
         "warning: nodes are {:.2g} % of the shortest edge deep in contact, above {:g} %: its forces may be "
-        "too small; raise its penalty{}\n",
-        100.0 * depth, 100.0 * much_depth, settings.quasi_static ? "" : ", or take method = \"kinematic\"");
+        "too small; {}\n",
+        100.0 * depth, 100.0 * much_depth,
+        moves_nodes             ? "take a smaller step (step_fraction), or refine the mesh"
+        : settings.quasi_static ? "raise its penalty"
+                                : "raise its penalty, or take method = \"kinematic\"");
   }
   if (settings.quasi_static) return;
   const double damping = settings.dynamics.damping, unexplained = history.unexplained_share();
