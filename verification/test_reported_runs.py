@@ -263,6 +263,17 @@ def test_a_body_that_settles_in_contact_keeps_its_balance(tmp_path):
     assert abs(float(re.search(r"energy balance: ([-+.e\d]+) %", outcome.stdout)[1])) < 2.0
 
 
+def test_a_soft_contact_is_noticed(tmp_path):
+    """The block sinks in by rho g L / (E p) of an edge: 3 % with p = .3, a hundredth of that by default.
+    The kinematic method keeps it out."""
+    for penalty, warns in (0.3, True), (30.0, False), (None, False):
+        lines = f'method = "penalty"\npenalty = {penalty}\n' if penalty else ""
+        (tmp_path / "soft.toml").write_text(SETTLING.replace("[[gravity]]", lines + "[[gravity]]"))
+        outcome = sandglass("run", "soft.toml", cwd=tmp_path)
+        assert ("deep in contact, above 1 %" in outcome.stderr) == warns
+        assert ('or take method = "kinematic"' in outcome.stderr) == warns
+
+
 def test_several_materials_conserve_energy(tmp_path):
     """At steps of a fifth, only the second-order error remains. It was 4.5 % for t4-anp."""
     for method in ("t4-anp", "t4", "tl-four-point"):
