@@ -264,8 +264,8 @@ def test_a_body_that_settles_in_contact_keeps_its_balance(tmp_path):
 
 
 def test_a_soft_contact_is_noticed(tmp_path):
-    """The block sinks in by rho g L / (E p) of an edge: 3 % with p = .3, a hundredth of that by default.
-    The kinematic method keeps it out."""
+    """The block sinks in by rho g L / (E p) of an edge: 3 % with p = .3, a hundredth of that by
+    default. The kinematic method keeps it out."""
     for penalty, warns in (0.3, True), (30.0, False), (None, False):
         lines = f'method = "penalty"\npenalty = {penalty}\n' if penalty else ""
         (tmp_path / "soft.toml").write_text(SETTLING.replace("[[gravity]]", lines + "[[gravity]]"))
