@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/hexahedron.hpp"
+#include "mesh/vectors.hpp"
 
 namespace sandglass {
 
