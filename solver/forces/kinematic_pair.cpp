@@ -12,8 +12,8 @@ namespace {
 /// Points remember also the weights of the point of the face that they meet; the direction to it where the
 /// step starts and their impulse along it, kg m; their impulse along the face, kg m; the direction to it
 /// where the step ends, and the motion with which they may leave, m. Nodes remember how far the contact moves
-/// them in this step, m. The strength of points that touch is one more
-/// than the number of the triangle of the face.
+/// them in this step, m. The strength of points that touch is one more than the number of the triangle of the
+/// face.
 class KinematicPair final : public SurfacePair {
  public:
   KinematicPair(const Contact& contact, SurfacesOfPair given, const NodalField& points,

@@ -194,7 +194,7 @@ class RestingContact final : public ObstacleContact {
 
   /// Whether a node that slips would now slip back: friction that stops it would push it to and fro.
   static bool turns(const Vector& along, const Row<double>& before) {
-    return along[0] * before[0] + along[1] * before[1] + along[2] * before[2] < 0.0;
+    return dot(along, {before[0], before[1], before[2]}) < 0.0;
   }
 
   /// The largest extension (m) that friction allows.

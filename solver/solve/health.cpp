@@ -138,8 +138,7 @@ void require_apart(const Scene& scene, const NodalField& u) {
       const Vector& X = mesh.points[at(node)];
       throw ComputationError(fmt::format(
           "contact '{}': in the equilibrium found, node {} or an edge of it, undeformed at ({:.6g}, {:.6g}, "
-          "{:.6g}) m, is "
-          "within element {}: bodies passed through each other\n"
+          "{:.6g}) m, is within element {}: bodies passed through each other\n"
           "remedy: impose less displacement, or more levels",
           contact->touch(Rows<double>(contact->memory()).data()).name, node, X[0], X[1], X[2], element));
     }

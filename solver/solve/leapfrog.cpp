@@ -100,8 +100,12 @@ template <class Real>
 NodalField Leapfrog<Real>::free_velocities(bool with_pushes) const {
   const double half = 0.5 * clock_.step_size;
   const Rows<Real>& increment = body_.state().increment;
-  Rows<Real> force = body_.free_forces();
-  if (with_pushes) body_.subtract_pushes(force);
+  Rows<Real> pushed;
+  if (with_pushes) {
+    pushed = body_.free_forces();
+    body_.subtract_pushes(pushed);
+  }
+  const Rows<Real>& force = with_pushes ? pushed : body_.free_forces();
   Rows<Real> rows(increment.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t i = 0; i < 3; ++i) {
