@@ -18,10 +18,7 @@ class RowConstraints {
  public:
   RowConstraints(const Scene& scene, const Layout& layout);
 
-  /// The constraints of nodes whose rows this rank owns.
-  const std::vector<std::size_t>& own() const { return own_; }
-
-  /// Those of them that move: the others do no work.
+  /// The constraints of nodes whose rows this rank owns, and that move: others do no work.
   const std::vector<std::size_t>& moving() const { return moving_; }
 
   /// Sets components that are held to zero, and their increments to the change.
