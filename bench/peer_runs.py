@@ -28,7 +28,7 @@ SPEED = 0.1
 CURVE_RATE = 15 / 8  # the largest slope of the loading curve of eq. 15
 # The longer run of a motion has at least three times the steps and, in programs that step quickly,
 # this many elements times steps, half a second, so that the difference exceeds the start-up time.
-MANY = 4e6
+MANY = 2e7
 # The lines of `sandglass run` about the steps of a motion, and the evaluations of a static run.
 STEPS = r"in (\d+) steps of"
 EVALUATIONS = r"equilibrium \(.*\): (\d+) evaluation"

@@ -17,47 +17,20 @@ class KinematicContact final : public ObstacleContact {
  public:
   using ObstacleContact::ObstacleContact;
 
-  /// The force on a node is its mass times the change of velocity over the step. It acts between two steps,
-  /// so the obstacle works with the mean of its motions.
   void push_out(Factors factors, const NodalPush& nodes) const override {
     ContactMemory memory(nodes.memory);
     const Vector moved = path_.at(factors);
-    Row<double>&position = memory.others[0], &last_of_obstacle = memory.others[1];
-    const bool first = position[3] == 0.0;
-    const Vector before = first ? path_.start : Vector{position[0], position[1], position[2]};
-    const Vector of_obstacle = difference(moved, before);
+    Row<double>&position = memory.others[0], &last_way = memory.others[1];
+    const bool is_first = position[3] == 0.0;
+    const Vector before = is_first ? path_.start : Vector{position[0], position[1], position[2]};
+    const Step step{difference(moved, before), {last_way[0], last_way[1], last_way[2]}, is_first};
     memory.clear_forces();
-    for_each_node(moved, nodes.u, [&](std::size_t k, const Vector& x, const auto& compute_gap) {
-      Row<double>& known = memory.others[own + k];
-      if (is_outside(x, known)) return;
-      const int node = nodes_[k].node;
-      Row<double>& increment = nodes.increment[node];
-      const Vector motion = difference({increment[0], increment[1], increment[2]}, of_obstacle);
-      Gap gap = compute_gap();
-      if (passes(x, gap, motion)) memory.note_passed(node);
-      if (gap.distance < 0.0) {
-        const Vector start = first || known[3] > 0.0 ? gap_at(difference(x, motion)).normal
-                                                     : Vector{known[0], known[1], known[2]};
-        const Row<double>& w = nodes.inverse_masses[node];
-        const bool in_box = obstacle_.inside && obstacle_.shape == Obstacle::Shape::box;
-        const bool across_edge = in_box || dot(start, gap.normal) < same_side;
-        const Vector change = across_edge ? correction_at_edge(x, gap, motion, w)
-                                          : correction(gap.distance, start, gap.normal, motion, w);
-        if (across_edge) gap.normal = gap_at(sum(x, 1.0, change)).normal;
-        Vector force{};
-        for (std::size_t i = 0; i < 3; ++i) {
-          if (!(w[i] > 0.0)) continue;
-          nodes.u[node][i] += change[i];
-          increment[i] += change[i];
-          force[i] = change[i] / (w[i] * nodes.gain);
-          memory.sums[1] += 0.5 * force[i] * (last_of_obstacle[i] + of_obstacle[i]);
-        }
-        memory.add_force(force, difference(sum(x, 1.0, change), obstacle_.point));
-      }
-      known = gap.distance > 0.0 ? Row<double>{{x[0], x[1], x[2], gap.distance}} : row_of(gap.normal);
-    });
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      const Vector x = place_of(k, nodes.u, moved);
+      if (!is_outside(x, memory.others[own + k])) push_out(k, x, step, nodes, memory);
+    }
     position = {{moved[0], moved[1], moved[2], 1.0}};
-    last_of_obstacle = row_of(of_obstacle);
+    last_way = row_of(step.way);
   }
 
   bool moves_nodes() const override { return true; }
@@ -73,6 +46,45 @@ class KinematicContact final : public ObstacleContact {
 
  private:
   static constexpr std::size_t own = 2;
+
+  /// The motion of the obstacle in a step.
+  struct Step {
+    Vector way, last_way;  ///< m, in this step and in the one before
+    bool is_first;
+  };
+
+  /// Moves a node, at x (m) in the frame of the obstacle, unless it is outside. The force on it is its mass
+  /// times the change of velocity over the step. It acts between two steps, so the obstacle works with the
+  /// mean of its motions. Out of line, as few nodes are near.
+  [[gnu::noinline]] void push_out(std::size_t k, const Vector& x, const Step& step, const NodalPush& nodes,
+                                  ContactMemory& memory) const {
+    Row<double>& known = memory.others[own + k];
+    const int node = nodes_[k].node;
+    Row<double>& increment = nodes.increment[node];
+    const Vector motion = difference({increment[0], increment[1], increment[2]}, step.way);
+    Gap gap = gap_at(x);
+    if (passes(x, gap, motion)) memory.note_passed(node);
+    if (gap.distance < 0.0) {
+      const Vector start = step.is_first || known[3] > 0.0 ? gap_at(difference(x, motion)).normal
+                                                           : Vector{known[0], known[1], known[2]};
+      const Row<double>& w = nodes.inverse_masses[node];
+      const bool in_box = obstacle_.inside && obstacle_.shape == Obstacle::Shape::box;
+      const bool across_edge = in_box || dot(start, gap.normal) < same_side;
+      const Vector change = across_edge ? correction_at_edge(x, gap, motion, w)
+                                        : correction(gap.distance, start, gap.normal, motion, w);
+      if (across_edge) gap.normal = gap_at(sum(x, 1.0, change)).normal;
+      Vector force{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!(w[i] > 0.0)) continue;
+        nodes.u[node][i] += change[i];
+        increment[i] += change[i];
+        force[i] = change[i] / (w[i] * nodes.gain);
+        memory.sums[1] += 0.5 * force[i] * (step.last_way[i] + step.way[i]);
+      }
+      memory.add_force(force, difference(sum(x, 1.0, change), obstacle_.point));
+    }
+    known = gap.distance > 0.0 ? Row<double>{{x[0], x[1], x[2], gap.distance}} : row_of(gap.normal);
+  }
 
   /// No distance changes by more than a point moves.
   static bool is_outside(const Vector& x, const Row<double>& known) {

@@ -103,26 +103,26 @@ class ObstacleContact : public ContactForce {
     return std::visit([](const auto& shape) { return shape.half_thickness(); }, shape_);
   }
 
-  /// Calls use(k, x, compute_gap) for all nodes, with the position x (m) in the frame of the obstacle.
+  /// The place (m) of a node in the frame of the obstacle.
+  template <class Rows>
+  Vector place_of(std::size_t k, const Rows& u, const Vector& moved) const {
+    const Row<double>& of_node = u[nodes_[k].node];
+    Vector x = nodes_[k].X;
+    for (std::size_t i = 0; i < 3; ++i) x[i] += of_node[i] - moved[i];
+    return x;
+  }
+
+  /// Calls use(k, x, gap) for all nodes, with such places x.
   template <class Rows, class Use>
-  void for_each_node(const Vector& moved, const Rows& u, const Use& use) const {
+  void for_each_gap(const Vector& moved, const Rows& u, const Use& use) const {
     std::visit(
         [&](const auto& shape) {
           for (std::size_t k = 0; k < nodes_.size(); ++k) {
-            const Row<double>& of_node = u[nodes_[k].node];
-            Vector x = nodes_[k].X;
-            for (std::size_t i = 0; i < 3; ++i) x[i] += of_node[i] - moved[i];
-            use(k, x, [&] { return facing_body(shape.at(x)); });
+            const Vector x = place_of(k, u, moved);
+            use(k, x, facing_body(shape.at(x)));
           }
         },
         shape_);
-  }
-
-  /// Calls use(k, x, gap) for all nodes.
-  template <class Rows, class Use>
-  void for_each_gap(const Vector& moved, const Rows& u, const Use& use) const {
-    for_each_node(moved, u,
-                  [&](std::size_t k, const Vector& x, const auto& compute_gap) { use(k, x, compute_gap()); });
   }
 
   /// At a position (m) in its frame.

@@ -92,7 +92,7 @@ Rows<double> Loads<Real>::loaded(const Rows<Real>& all) const {
 template <class Real>
 void Loads<Real>::take(const Rows<Real>& all, Rows<double>& loaded) const {
   for (std::size_t k = 0; k < loaded.size(); ++k) {
-    for (std::size_t i = 0; i < 3; ++i) loaded[k][i] = static_cast<double>(all[rows_[k]][i]);
+    for (std::size_t i = 0; i < 4; ++i) loaded[k][i] = static_cast<double>(all[rows_[k]][i]);
   }
 }
 
@@ -147,6 +147,8 @@ void Loads<Real>::subtract_derivatives_of_power(const State<Real>& state, const 
   }
 }
 
+/// A push acts between two steps, so its work is the product with the mean of their motions. The first acts
+/// for half a step: if it changes the velocity v of a mass m by d, its work is m d (v + d / 2).
 template <class Real>
 bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses, double gain) {
   if (!moves_nodes_) return false;
@@ -159,30 +161,24 @@ bool Loads<Real>::push_out(State<Real>& state, const Rows<Real>& inverse_masses,
     contacts_[c]->push_out(factors_, {by_node(u_.data()), by_node(increment_.data()), by_node(last.data()),
                                       by_node(masses.data()), gain, memory_.data() + memory_of_[c]});
   }
-  for (std::size_t k = 0; k < u_.size(); ++k) {
+  for (std::size_t k = 0; k < pushes_of_step_.size(); ++k) {
+    Row<double>& push = pushes_of_step_[k];  // so far the increment that the node had
+    if (push.x == increment_[k].x) {         // as most have
+      push = {};
+      continue;
+    }
     for (std::size_t i = 0; i < 3; ++i) {
       state.u[rows_[k]][i] = static_cast<Real>(u_[k][i]);
       state.increment[rows_[k]][i] = static_cast<Real>(increment_[k][i]);
+      const double now = increment_[k][i], by = now - push[i];
+      const double before = has_pushed_ != 0.0 ? last[k][i] : -0.5 * by;
+      push[i] = by != 0.0 ? by / (masses[k][i] * gain) : 0.0;
+      work_of_pushes_ += 0.5 * push[i] * (before + now);
     }
   }
-  add_work_of_pushes(gain);
-  return true;
-}
-
-/// A push acts between two steps, so its work is the product with the mean of their motions. The first acts
-/// for half a step: if it changes the velocity v of a mass m by d, its work is m d (v + d / 2).
-template <class Real>
-void Loads<Real>::add_work_of_pushes(double gain) {
-  for (std::size_t k = 0; k < pushes_of_step_.size(); ++k) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double now = increment_[k][i], by = now - pushes_of_step_[k][i];
-      const double last = has_pushed_ != 0.0 ? last_increment_[k][i] : -0.5 * by;
-      pushes_of_step_[k][i] = by != 0.0 ? by / (masses_[k][i] * gain) : 0.0;
-      work_of_pushes_ += 0.5 * pushes_of_step_[k][i] * (last + now);
-    }
-  }
-  last_increment_ = increment_;
+  std::swap(last_increment_, increment_);
   has_pushed_ = 1.0;
+  return true;
 }
 
 template <class Real>

@@ -133,8 +133,6 @@ class Loads {
   void take(const Rows<Real>& all, Rows<double>& loaded) const;
   Rows<double> loaded(const Rows<Real>& all) const;
 
-  void add_work_of_pushes(double gain);
-
   /// Sets the values at loaded rows that other ranks own.
   void gather(std::span<double> values) const;
 
