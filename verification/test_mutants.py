@@ -15,7 +15,7 @@ import run
 import worker
 from command_line import ROOT, ran
 from common.errors import InputError
-from plant import Mistake, mistakes_of, plant
+from plant import Mistake, depend, mistakes_of, plant
 from worker import Failure, programs_of
 
 PATCHES = patches.read_patches()
@@ -137,6 +137,13 @@ def test_verdicts_are_stored_and_written(call, outcome, code, verdict):
 )
 def test_mistakes_of_a_line(line, kind, mistakes):
     assert [text.strip() for one, text in mistakes_of(line) if one == kind] == mistakes
+
+
+def test_only_statements_that_depend_on_each_other_are_swapped():
+    assert depend("  a = b;", "  c = a;") and depend("  c = a;", "  a = b;")
+    assert depend("  f(a);", "  c = a;")  # f may change it
+    assert not depend("  a = c;", "  b = c;")
+    assert not depend("  const double a = c;", "  const double b = c;")
 
 
 def commit(folder, files):

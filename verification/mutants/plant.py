@@ -22,6 +22,9 @@ VALUE = re.compile(r"(?:(?<=\breturn )|(?<= [-+*/]= )|(?<= = ))(?!-)[^=;{}]+(?=;
 MINUS = re.compile(r"(?:(?<=[(\[{])|(?<=[,=] )|(?<=return ))-(?=[\w(])")
 NO_CODE = re.compile(r"\s*(#|//|static_assert|template|using|namespace|case |enum|class|struct)")
 STATEMENT = re.compile(r"(\s*)(?!return|break|continue|using|}|//)\S.*;$")
+NAME = re.compile(r"[A-Za-z_]\w*")
+ASSIGNMENT = re.compile(r" [-+*/]?= ")
+DECLARED = re.compile(r"\s*[\w:<>, ]+[&*]* (\w+)")
 
 
 @dataclass(frozen=True)
@@ -88,9 +91,17 @@ def mistakes_at(file, lines, number, added):
     found = [Mistake(file, number, kind, (line,), (text,)) for kind, text in mistakes_of(line)]
     below = lines[number] if number + 1 in added else ""
     here, there = STATEMENT.fullmatch(line), STATEMENT.fullmatch(below)
-    if here and there and here[1] == there[1] and line != below:
+    if here and there and here[1] == there[1] and line != below and depend(line, below):
         found.append(Mistake(file, number, "order", (line, below), (below, line)))
     return found
+
+
+def depend(*statements):
+    """Whether one of two statements may change a name that the other has: their order matters."""
+    names = [set(NAME.findall(statement)) for statement in statements]
+    left = [ASSIGNMENT.split(statement)[0] for statement in statements]
+    changed = [set(NAME.findall(DECLARED.sub(r"\1", text))) for text in left]
+    return not (changed[0].isdisjoint(names[1]) and changed[1].isdisjoint(names[0]))
 
 
 def git(root, *words):
