@@ -6,12 +6,14 @@
 
 #include <map>
 #include <numbers>
+#include <random>
 
 #include "base/error.hpp"
 #include "comparison/mesh_quality.hpp"
 #include "io/case_file.hpp"
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"
+#include "mesh/interpolation.hpp"
 #include "mesh/node_set.hpp"
 #include "mesh/parts.hpp"
 #include "mesh/placed_body.hpp"
@@ -495,6 +497,45 @@ TEST(PlacedBodies, are_turned_then_moved_and_have_sets) {
     EXPECT_LT(distance(mesh.points[8 + n], {X[2] + 0.5, X[0] + 0.25, X[1] - 1.0}), 1e-14);
   }
   EXPECT_NEAR(volume(mesh), 12.0, 1e-13);
+}
+
+/// Two wedges whose edges cross anywhere, at any angle, each one element: they overlap if one edge is deeper
+/// in the other wedge than a share of half its height, to 1 %. No node is within the other wedge.
+TEST(Overlaps, are_found_where_edges_cross) {
+  std::mt19937 random(3);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  constexpr double share = 0.3;
+  for (int scene = 0; scene < 300; ++scene) {
+    const double tip = between(0.001, 0.02), base = between(0.02, 0.3);  // half widths; height 1, length 2
+    const double least = 0.5 * share,
+                 depth = scene % 2 ? between(1.01 * least, 0.8) : between(0.0, 0.99 * least);
+    const double angle = between(0.3, 2.8), shift = between(-0.5, 0.5);
+    Mesh mesh;
+    for (const bool upper : {false, true}) {
+      const auto first = static_cast<int>(mesh.points.size());
+      for (int I = 0; I < corner_signs.rows; ++I) {
+        const double half = corner_signs(I, 2) > 0.0 ? tip : base, x = half * corner_signs(I, 0),
+                     y = corner_signs(I, 1) + (upper ? 0.0 : shift), z = 0.5 * (corner_signs(I, 2) - 1.0);
+        if (upper) {  // upside down, turned about the axis z
+          mesh.points.push_back({std::cos(angle) * x + std::sin(angle) * y,
+                                 std::sin(angle) * x - std::cos(angle) * y, -z - depth});
+        } else {
+          mesh.points.push_back({x, y, z});
+        }
+      }
+      Hexahedron cell;
+      std::iota(cell.begin(), cell.end(), first);
+      mesh.cells.push_back(cell);
+    }
+    std::vector<int> nodes(mesh.points.size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    EXPECT_EQ(!overlaps(mesh.points, mesh.cells, nodes, share, share).empty(), scene % 2 == 1)
+        << "depth " << depth << ", tip " << tip << ", base " << base << ", angle " << angle;
+    EXPECT_TRUE(
+        overlaps(mesh.points, mesh.cells, points_within(mesh.points, mesh.cells, nodes, 1e-3)).empty());
+  }
 }
 
 /// A node has an eighth of the mass of each of its elements, here of lengths 1 and 3.

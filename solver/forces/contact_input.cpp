@@ -49,11 +49,9 @@ int node_within_body(const ForceResolver& resolver, const std::vector<Quadrilate
   for (const int node : nodes_of(other)) has_other[at(bodies.least(node))] = true;
   constexpr double just_within = 1e-3;
   constexpr double deep_within = 0.3;  // edges of curved surfaces may cut into each other
-  auto points = points_within(resolver.points, resolver.cells, nodes_of(surface), just_within);
-  const auto along = points_along_edges(resolver.points, resolver.cells, nodes_of(surface), deep_within);
-  points.insert(points.end(), along.begin(), along.end());
-  for (const auto& [point, element] : overlaps(resolver.points, resolver.cells, points)) {
-    if (has_other[at(bodies.least(resolver.cells[element][0]))]) return point.node;
+  for (const auto& [line, element] :
+       overlaps(resolver.points, resolver.cells, nodes_of(surface), just_within, deep_within)) {
+    if (has_other[at(bodies.least(resolver.cells[element][0]))]) return line.nodes[0];
   }
   return -1;
 }

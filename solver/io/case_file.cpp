@@ -181,7 +181,7 @@ void require_bodies_apart(const Case& description, const Mesh& mesh) {
   const auto found =
       overlaps(mesh.points, mesh.cells, points_within(mesh.points, mesh.cells, nodes, well_within));
   if (found.empty()) return;
-  const Vector& X = found.front().first.X;
+  const Vector& X = found.front().first.from;
   throw InputError(fmt::format(
       "{}: mesh.bodies: the point ({:.6g}, {:.6g}, {:.6g}) m is in two bodies; allowed: bodies that do not "
       "intersect, or a [[tie]] that joins them",

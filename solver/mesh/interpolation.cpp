@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "base/error.hpp"
 #include "mesh/edges.hpp"
@@ -113,6 +114,74 @@ class ElementGrid {
   std::vector<std::vector<std::size_t>> bins_;
 };
 
+/// The place a share of the way from a point (m) to another.
+Vector towards(const Vector& other, double share, const Vector& X) {
+  return sum(X, share, difference(other, X));
+}
+
+/// The face at the end of an edge of an element, which has one of its nodes and not the other; sorted.
+Quadrilateral end_face(const Hexahedron& cell, int node, int other) {
+  const auto place = [&](int of) { return static_cast<int>(std::ranges::find(cell, of) - cell.begin()); };
+  int axis = 0;
+  while (corner_signs(place(node), axis) == corner_signs(place(other), axis)) ++axis;
+  Quadrilateral face{};
+  std::size_t count = 0;
+  for (int I = 0; I < corner_signs.rows; ++I) {
+    if (corner_signs(I, axis) == corner_signs(place(node), axis)) face[count++] = cell[at(I)];
+  }
+  std::ranges::sort(face);
+  return face;
+}
+
+/// The first and the last place (0 to 1) of a line from a point along a way (m) within a box; none outside.
+std::optional<std::pair<double, double>> part_within(const std::array<Vector, 2>& box, const Vector& from,
+                                                     const Vector& way) {
+  double first = 0.0, last = 1.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double low = box[0][i] - from[i], high = box[1][i] - from[i];
+    if (way[i] == 0.0) {
+      if (low > 0.0 || high < 0.0) return std::nullopt;
+      continue;
+    }
+    const auto [in, out] = std::minmax({low / way[i], high / way[i]});
+    first = std::max(first, in);
+    last = std::min(last, out);
+  }
+  if (first > last) return std::nullopt;
+  return std::pair(first, last);
+}
+
+/// Whether a part of a line from a point along a way (m) is within an element. The distance in parent
+/// coordinates is convex along the line, in a parallelepiped exactly: between three places, the middle one
+/// the nearest, it is below the middle by no more than the others are above it.
+bool enters(const NodalVectors<double>& nodal, const Vector& from, const Vector& way,
+            const std::pair<double, double>& part) {
+  struct Place {
+    double t, distance;
+  };
+  const auto look = [&](double t) {
+    const auto xi = parent_point(nodal, sum(from, t, way));
+    return Place{t, xi ? parent_distance(*xi) : INFINITY};
+  };
+  Place first = look(part.first), last = look(part.second), middle = look(std::midpoint(first.t, last.t));
+  constexpr int halvings = 30;
+  for (int k = 0; k < halvings; ++k) {
+    if (std::min({first.distance, middle.distance, last.distance}) < 1.0) return true;
+    if (2.0 * middle.distance - std::max(first.distance, last.distance) >= 1.0) return false;
+    const Place before = look(std::midpoint(first.t, middle.t)),
+                after = look(std::midpoint(middle.t, last.t));
+    if (before.distance < middle.distance) {
+      last = std::exchange(middle, before);
+    } else if (after.distance < middle.distance) {
+      first = std::exchange(middle, after);
+    } else {
+      first = before;
+      last = after;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& points) {
@@ -153,63 +222,86 @@ NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalFie
   return values;
 }
 
-std::vector<PointWithin> points_within(const NodalField& points, std::span<const Hexahedron> cells,
-                                       std::span<const int> nodes, double share) {
+std::vector<LineWithin> points_within(const NodalField& points, std::span<const Hexahedron> cells,
+                                      std::span<const int> nodes, double share) {
   std::vector<bool> remains(points.size(), false);
   for (const int node : nodes) remains[at(node)] = true;
-  std::vector<PointWithin> within;
-  for (std::size_t e = 0; e < cells.size(); ++e) {
-    for (const int node : cells[e]) {
+  std::vector<LineWithin> within;
+  for (const Hexahedron& cell : cells) {
+    const Vector middle = mean_at(cell, points);
+    for (const int node : cell) {
       if (!remains[at(node)]) continue;
       remains[at(node)] = false;
-      const Vector& X = points[at(node)];
-      Vector inside = mean_at(cells[e], points);
-      for (std::size_t i = 0; i < 3; ++i) inside[i] = X[i] + share * (inside[i] - X[i]);
-      within.push_back({node, e, inside});
+      const Vector X = towards(middle, share, points[at(node)]);
+      within.push_back({{node, node}, X, X});
     }
   }
   return within;
 }
 
-std::vector<PointWithin> points_along_edges(const NodalField& points, std::span<const Hexahedron> cells,
-                                            std::span<const int> nodes, double share) {
+std::vector<LineWithin> edges_within(const NodalField& points, std::span<const Hexahedron> cells,
+                                     std::span<const int> nodes, double share) {
   std::vector<bool> is_one(points.size(), false);
   for (const int node : nodes) is_one[at(node)] = true;
+  std::set<Quadrilateral> boundary;
+  for (Quadrilateral face : boundary_faces(cells)) {
+    std::ranges::sort(face);
+    boundary.insert(face);
+  }
   std::set<std::pair<int, int>> done;
-  std::vector<PointWithin> along;
-  for (std::size_t e = 0; e < cells.size(); ++e) {
-    const Vector middle = mean_at(cells[e], points);
+  std::vector<LineWithin> within;
+  for (const Hexahedron& cell : cells) {
+    const Vector middle = mean_at(cell, points);
     for (const auto& [i, j] : hexahedron_edges) {
-      const auto [a, b] = std::minmax(cells[e][i], cells[e][j]);
+      const auto [a, b] = std::minmax(cell[i], cell[j]);
       if (!is_one[at(a)] || !is_one[at(b)] || !done.emplace(a, b).second) continue;
-      constexpr int parts = 8;
-      for (int k = 0; k < parts; ++k) {
-        const double t = (k + 0.5) / parts;
-        const Vector on_edge = sum(points[at(a)], t, difference(points[at(b)], points[at(a)]));
-        along.push_back({t < 0.5 ? a : b, e, sum(on_edge, share, difference(middle, on_edge))});
-      }
+      const Vector of_edge = towards(points[at(b)], 0.5, points[at(a)]);
+      const auto line_end = [&](int node, int other) {
+        const Vector& X = points[at(node)];
+        const Vector& from = boundary.contains(end_face(cell, node, other)) ? X : of_edge;
+        return sum(X, share, difference(middle, from));
+      };
+      within.push_back({{a, b}, line_end(a, b), line_end(b, a)});
     }
   }
-  return along;
+  return within;
 }
 
-std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& points,
-                                                          std::span<const Hexahedron> cells,
-                                                          const std::vector<PointWithin>& some) {
+std::vector<std::pair<LineWithin, std::size_t>> overlaps(const NodalField& points,
+                                                         std::span<const Hexahedron> cells,
+                                                         const std::vector<LineWithin>& lines) {
   const ElementGrid grid(points, cells);
   std::vector<std::array<Vector, 2>> boxes;
   for (const Hexahedron& cell : cells) boxes.push_back(bounding_box(values_at(cell, points)));
-  std::vector<std::pair<PointWithin, std::size_t>> found;
-  for (const PointWithin& one : some) {
-    for (const std::size_t e : grid.near(one.X)) {
-      const auto& box = boxes[e];
-      const auto beyond = [&](std::size_t i) { return one.X[i] < box[0][i] || one.X[i] > box[1][i]; };
-      if (e == one.element || beyond(0) || beyond(1) || beyond(2)) continue;
-      const auto xi = parent_point(gather(points, cells[e]), one.X);
-      if (xi && parent_distance(*xi) < 1.0) found.emplace_back(one, e);
+  std::vector<std::pair<LineWithin, std::size_t>> found;
+  std::vector<std::size_t> near;
+  constexpr int looks = 16;  // along an edge: the grid has elements at half their size
+  for (const LineWithin& line : lines) {
+    const Vector way = difference(line.to, line.from);
+    near.clear();
+    for (int k = 0; k < looks; ++k) {
+      const auto& here = grid.near(sum(line.from, (k + 0.5) / looks, way));
+      near.insert(near.end(), here.begin(), here.end());
+    }
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
+    for (const std::size_t e : near) {
+      if (std::ranges::find_first_of(cells[e], line.nodes) != cells[e].end()) continue;
+      const auto part = part_within(boxes[e], line.from, way);
+      if (part && enters(gather(points, cells[e]), line.from, way, *part)) found.emplace_back(line, e);
     }
   }
   return found;
+}
+
+std::vector<std::pair<LineWithin, std::size_t>> overlaps(const NodalField& points,
+                                                         std::span<const Hexahedron> cells,
+                                                         std::span<const int> nodes, double from_points,
+                                                         double from_edges) {
+  auto lines = points_within(points, cells, nodes, from_points);
+  const auto edges = edges_within(points, cells, nodes, from_edges);
+  lines.insert(lines.end(), edges.begin(), edges.end());
+  return overlaps(points, cells, lines);
 }
 
 }  // namespace sandglass

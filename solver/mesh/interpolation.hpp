@@ -25,24 +25,31 @@ std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& poi
 /// from the closest element in parent coordinates. Throws InputError for a point that is far from the mesh.
 NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalField& points);
 
-/// A point (m) within an element of a node.
-struct PointWithin {
-  int node;
-  std::size_t element;
-  Vector X;
+/// A straight line for an edge of a mesh, or a point for a node.
+struct LineWithin {
+  std::array<int, 2> nodes;  ///< twice the same for a point
+  Vector from, to;           ///< m
 };
 
 /// Points for some nodes, the given share of the way from each to the middle of one of its elements.
-std::vector<PointWithin> points_within(const NodalField& points, std::span<const Hexahedron> cells,
-                                       std::span<const int> nodes, double share);
+std::vector<LineWithin> points_within(const NodalField& points, std::span<const Hexahedron> cells,
+                                      std::span<const int> nodes, double share);
 
-/// The same for places on the edges between these nodes: the middles of some equal parts of each edge.
-std::vector<PointWithin> points_along_edges(const NodalField& points, std::span<const Hexahedron> cells,
-                                            std::span<const int> nodes, double share);
+/// The edges between these nodes, moved by the given share of the way to the middle of one of their elements;
+/// ends on the boundary are moved inwards along the edge, too.
+std::vector<LineWithin> edges_within(const NodalField& points, std::span<const Hexahedron> cells,
+                                     std::span<const int> nodes, double share);
 
-/// The points that are also within other elements, with each of these: there the mesh overlaps itself.
-std::vector<std::pair<PointWithin, std::size_t>> overlaps(const NodalField& points,
-                                                          std::span<const Hexahedron> cells,
-                                                          const std::vector<PointWithin>& some);
+/// The lines that are partly within elements that do not have their nodes, with each of these: there the mesh
+/// overlaps itself.
+std::vector<std::pair<LineWithin, std::size_t>> overlaps(const NodalField& points,
+                                                         std::span<const Hexahedron> cells,
+                                                         const std::vector<LineWithin>& lines);
+
+/// These of both kinds, by a share of the way from points and one from edges.
+std::vector<std::pair<LineWithin, std::size_t>> overlaps(const NodalField& points,
+                                                         std::span<const Hexahedron> cells,
+                                                         std::span<const int> nodes, double from_points,
+                                                         double from_edges);
 
 }  // namespace sandglass

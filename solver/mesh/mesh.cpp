@@ -28,7 +28,7 @@ double largest_distance(const NodalField& a, const NodalField& b) {
   return largest;
 }
 
-std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) {
+std::vector<Quadrilateral> boundary_faces(std::span<const Hexahedron> cells) {
   std::vector<Quadrilateral> faces, keys;  // keys have their nodes in ascending order
   int last = -1;
   for (const auto& cell : cells) {

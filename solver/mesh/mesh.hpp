@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -101,7 +102,7 @@ Vector mean_at(const Nodes& nodes, const NodalField& field) {
 double largest_distance(const NodalField& a, const NodalField& b);
 
 /// The faces that belong to one hexahedron only, in the order of the cells.
-std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells);
+std::vector<Quadrilateral> boundary_faces(std::span<const Hexahedron> cells);
 
 /// Whether each of a number of nodes belongs to one of some faces.
 std::vector<bool> nodes_of(const std::vector<Quadrilateral>& faces, std::size_t nodes);

@@ -121,11 +121,9 @@ void require_apart(const Scene& scene, const NodalField& u) {
     constexpr double deep_within = 0.3;
     const auto overlaps_of = [&](const NodalField& points) {
       std::set<std::pair<int, std::size_t>> found;
-      auto within = points_within(points, mesh.cells, contact->nodes(), deep_within);
-      const auto along = points_along_edges(points, mesh.cells, contact->nodes(), deep_within);
-      within.insert(within.end(), along.begin(), along.end());
-      for (const auto& [point, element] : overlaps(points, mesh.cells, within))
-        found.emplace(point.node, element);
+      for (const auto& [line, element] :
+           overlaps(points, mesh.cells, contact->nodes(), deep_within, deep_within))
+        found.emplace(line.nodes[0], element);
       return found;
     };
     NodalField now = mesh.points;

@@ -111,7 +111,7 @@ def run_random(options, stop):
             lines = [f"- {line.strip()}" for line in mistake.before]
             lines += [f"+ {line.strip()}" for line in mistake.after]
             head = f"{mistake.file}:{mistake.line}, {mistake.kind}: {verdict}"
-            head += f" by {by}" if verdict == "noticed" else ""
+            head += f" by {by}" if verdict in ("noticed", "false alarm") else ""
             print(head, *lines, sep="\n    ", flush=True)
     noticed, survived = verdicts.count("noticed"), verdicts.count("survived")
     if noticed + survived:
