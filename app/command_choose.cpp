@@ -55,9 +55,7 @@ int run_choose(const ChooseOptions& options) {
   const Scene scene = make_scene(problem);
   if (scene.settings.quasi_static) require_held(scene);
   print_understood(problem, scene);
-  for (const auto& place : {options.output, options.json}) {
-    if (!place.empty()) require_place(place, problem.description.files);
-  }
+  require_places({options.output, options.json}, problem.description.files);
   watch_for_interrupt();
   std::optional<Choice> choice;
   {

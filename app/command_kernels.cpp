@@ -23,8 +23,7 @@ struct KernelOptions {
 
 void write_kernels(const KernelOptions& options) {
   const Case description = find_case(options.case_name);
-  for (const std::string& file : {options.output, options.constants})
-    if (!file.empty()) require_place(file, description.files);
+  require_places({options.output, options.constants}, description.files);
   const std::string text = kernel_source(options.request, description, build_provenance());
   if (options.output.empty()) {
     fmt::print("{}", text);

@@ -124,6 +124,13 @@ void print_limits(const std::vector<LimitCheck>& limits) {
   }
 }
 
+void print_left_out(const std::vector<Verification::LeftOut>& left_out) {
+  if (left_out.empty()) return;
+  fmt::print("\nleft out, with their limits\n");
+  for (const auto& [case_name, method, reason] : left_out)
+    fmt::print("{} {}: {}\n", case_name, method, reason);
+}
+
 int run_verify(const VerifyOptions& options) {
   const VerifyPlan plan{parse_precision(options.precision), options.threads, !options.no_costs,
                         processor_named(options.device)};
@@ -144,6 +151,7 @@ int run_verify(const VerifyOptions& options) {
   print_verdicts(found->verdicts);
   fmt::print("{}", published_tables(found->verdicts));
   print_limits(limits);
+  print_left_out(found->left_out);
   if (plan.precision != Precision::double_precision) {
     fmt::print("\nthe cases' limits are for double precision; none was checked in {}\n", options.precision);
   }

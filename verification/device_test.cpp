@@ -6,6 +6,7 @@
 #include "assembly/processor.hpp"
 #include "benchmark/force_check.hpp"
 #include "device/opencl.hpp"
+#include "device/opencl_force.hpp"
 #include "device/opencl_processor.hpp"
 #include "io/case_file.hpp"
 #include "solve/central_difference.hpp"
@@ -90,6 +91,36 @@ TEST_F(Device, forces_of_every_method_and_law_are_those_of_this_processor) {
     }
   });
   EXPECT_GE(compared, (13 + 2 * 7) * 2);
+}
+
+/// Of each law one kernel is compiled, for all parameters.
+TEST_F(Device, laws_with_other_parameters_share_a_kernel) {
+  const Mesh mesh = sheared_box();
+  const NodalField u = random_displacements(mesh);
+  Materials materials;
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    const double modulus = 1000.0 + 10.0 * static_cast<double>(e);
+    if (e % 2 == 0) {
+      materials.list.push_back({NeoHookean{.young_modulus = modulus, .poisson_ratio = 0.3}, 1000.0});
+    } else {
+      materials.list.push_back({Yeoh{.c1 = modulus, .c2 = 0.1 * modulus, .c3 = 10.0, .bulk = 2e4}, 1000.0});
+    }
+    materials.of_element.push_back(static_cast<std::uint16_t>(e));
+  }
+  for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
+    MethodChoice choice{.method = "tl-perturbation", .precision = precision, .processor = processor_};
+    const int kernels = std::visit(
+        []<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+          return dynamic_cast<const OpenClForce<Real>&>(*elements).traffic().launches;
+        },
+        make_internal_force(mesh, materials, choice));
+    EXPECT_EQ(kernels, 2);
+    const NodalField found = forces(mesh, materials, choice, u);
+    choice.processor = nullptr;
+    EXPECT_LE(relative_difference(found, forces(mesh, materials, choice, u)),
+              force_limit(precision, materials.list.front().law))
+        << name_of(precision);
+  }
 }
 
 TEST_F(Device, motions_of_cases_are_those_of_this_processor) {

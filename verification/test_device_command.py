@@ -16,7 +16,8 @@ def test_limits_of_dynamic_cases_hold_on_a_device():
     cases = "loaded-block", "plucked-beam", "pushed-ellipsoid"
     printed = sandglass("verify", *cases, "--device", "opencl", code=0).stdout
     assert printed.count("holds ") >= 9
-    assert "tl-adaptive" not in printed  # a device cannot compute it, which breaks no limit
+    left_out = printed.partition("left out, with their limits\n")[2]
+    assert "pushed-ellipsoid tl-adaptive: method 'tl-adaptive' runs on this processor" in left_out
 
 
 def test_a_run_says_where_its_state_is():
@@ -68,3 +69,43 @@ def test_bench_leaves_out_scenes_whose_state_cannot_stay_there():
 )
 def test_what_a_device_cannot_do_is_refused(arguments, reason):
     assert reason in sandglass(*arguments, code=2).stderr
+
+
+VISCOELASTIC = """[case]
+name = "own"
+requirement = "A device does not compute it."
+answer = "dynamic"
+[mesh]
+generator = "box"
+size = [0.02, 0.02, 0.04]
+elements = [2, 2, 4]
+[material]
+law = "viscoelastic-neo-hookean"
+relaxation_1 = 0.5
+time_1 = 0.1
+young_modulus = 3000.0
+poisson_ratio = 0.45
+density = 1000.0
+[sets]
+foot = { z = [0.0, 0.0] }
+head = { z = [0.04, 0.04] }
+[[displacement]]
+set = "foot"
+value = [0.0, 0.0, 0.0]
+[dynamics]
+duration = 0.01
+[[published]]
+set = "head"
+component = "x"
+value = 5.0
+source = "a test"
+"""
+
+
+def test_verify_refuses_a_case_of_which_a_device_computes_nothing(tmp_path):
+    """Rather than checking no limit and ending well."""
+    case = tmp_path / "own.toml"
+    case.write_text(VISCOELASTIC)
+    found = sandglass("verify", case, "--device", "opencl", code=2)
+    law = "law 'viscoelastic-neo-hookean' runs on this processor alone"
+    assert f"{case}: nothing can be computed on this device: {law}" in found.stderr

@@ -93,6 +93,8 @@ choose block.toml --threads 0 | --threads = 0
 choose block.toml --json /dev/null/choice.json | /dev/null/choice.json
 choose block.toml --output /dev/null/chosen.toml | /dev/null/chosen.toml
 choose block.toml -o block.toml | is an input of this command
+choose block.toml -o new.toml --json ./new.toml | would be written twice
+kernels tl-none block.toml -o new.c --constants ./new.c | would be written twice
 
 stability block.toml --map lode | 'lode' & did you mean 'load'
 stability block.toml --map load,load | --map & two different ones

@@ -101,7 +101,7 @@ std::vector<OpenClDeviceName> opencl_devices() {
         const bool is_graphics = (number_of(device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_GPU) != 0;
         if (is_graphics != graphics) continue;
         found.push_back({text_of(device, CL_DEVICE_NAME), number_of(device, CL_DEVICE_DOUBLE_FP_CONFIG) != 0,
-                         platform, device});
+                         number_of(device, CL_DEVICE_MAX_WORK_GROUP_SIZE), platform, device});
       }
     }
   }

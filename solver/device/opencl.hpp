@@ -16,6 +16,7 @@ namespace sandglass {
 struct OpenClDeviceName {
   std::string name;
   bool has_double;
+  std::size_t largest_group;  ///< of work items
   cl_platform_id platform;
   cl_device_id device;
 };

@@ -37,6 +37,10 @@ class OpenClProcessor final : public Processor {
     if (choice.precision == Precision::double_precision && !chosen_.has_double) {
       return fmt::format("'{}' does not compute in double precision", chosen_.name);
     }
+    if (chosen_.largest_group < OpenClKernel::group) {
+      return fmt::format("'{}' runs groups of at most {} work items, not {}", chosen_.name,
+                         chosen_.largest_group, OpenClKernel::group);
+    }
     return {};
   }
 

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -122,6 +123,19 @@ void require_place(const fs::path& path, const std::vector<fs::path>& inputs) {
   }
   const Undisturbed meanwhile;
   const NewFile tried(path);
+}
+
+void require_places(const std::vector<fs::path>& paths, const std::vector<fs::path>& inputs) {
+  std::vector<fs::path> places;
+  for (const fs::path& path : paths) {
+    if (path.empty()) continue;
+    require_place(path, inputs);
+    places.push_back(fs::weakly_canonical(fs::absolute(path)));
+    if (std::ranges::count(places, places.back()) > 1) {
+      throw InputError(fmt::format("{}: would be written twice by this command; name different output files",
+                                   path.string()));
+    }
+  }
 }
 
 void make_folder(const fs::path& path) {

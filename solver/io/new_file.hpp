@@ -36,6 +36,10 @@ class NewFile {
 /// at the end of long work.
 void require_place(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
+/// The same for several files, which must be different ones; those without a name are not written.
+void require_places(const std::vector<std::filesystem::path>& paths,
+                    const std::vector<std::filesystem::path>& inputs = {});
+
 /// Creates a folder and its parents unless they exist. Throws InputError if that fails.
 void make_folder(const std::filesystem::path& path);
 

@@ -45,6 +45,7 @@ struct Constant {
     return static_cast<Real>(in_double);
   }
   bool is(double number) const { return in_double == number && in_float == static_cast<float>(number); }
+  bool operator==(const Constant&) const = default;
 };
 
 /// An operation of a straight-line program, on the results of earlier steps.

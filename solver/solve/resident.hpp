@@ -30,8 +30,12 @@ class ResidentMotion {
 
   StepTraffic step_traffic() const { return state_->step_traffic(); }
 
-  /// Collects a step.
-  void add(ResidentStep step) { steps_.push_back(std::move(step)); }
+  /// Collects a step. Submits and waits from time to time, as the other processor keeps what is submitted.
+  void add(ResidentStep step) {
+    constexpr std::size_t most = 1000;
+    steps_.push_back(std::move(step));
+    if (steps_.size() == most) finish();
+  }
 
   /// Submits what was collected and waits for its end.
   void finish() {

@@ -15,7 +15,7 @@ const std::vector<Dialect>& dialects() {
        .language = "C99",
        .bits_of_double = "long long",
        .bits_of_float = "int",
-       .local = "static ",
+       .local = "static inline ",
        .begin = "#include <tgmath.h>\n\n",
        .array = "const {real}* restrict {name}",
        .results = "{real}* restrict {name}",

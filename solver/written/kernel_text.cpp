@@ -83,6 +83,10 @@ class Writer {
     text += filled(dialect_.kernel, fmt::arg("name", title.name),
                    fmt::arg("arguments", fmt::to_string(fmt::join(arguments, dialect_.between))));
     const std::string indent(4, ' ');
+    std::vector<bool> is_read(numbers.size(), false);
+    for (const Step& step : force.program.steps) {
+      if (step.operation == Operation::input) is_read[static_cast<std::size_t>(step.of[0])] = true;
+    }
     const int nodes = force.arrays.front().numbers / 3;
     for (int I = 0; by_places_ && I < nodes; ++I) {
       text += indent +
@@ -90,8 +94,10 @@ class Writer {
                      fmt::arg("value", entry("places", I))) +
               "\n";
     }
+    std::size_t input = 0;
     for (const KernelArray& array : force.arrays) {
       for (int k = 0; k < array.numbers; ++k) {
+        if (!is_read[input++]) continue;
         const std::string number = by_places_ && array.is_nodal
                                        ? fmt::format("{}[place{} + {}]", array.name, k / 3, k % 3)
                                        : entry(array.name, k);

@@ -18,28 +18,34 @@ namespace {
 
 using Task = Verification::Task;
 
-/// Every method on every scene, methods with a kappa at `auto` and along the case's kappa curve.
-std::vector<Task> make_tasks(const std::deque<VerifiedScene>& scenes, const VerifyPlan& plan) {
-  std::vector<Task> tasks;
-  for (const auto& of : scenes) {
+/// Adds every method on every scene, methods with a kappa at `auto` and along the case's kappa curve.
+void add_tasks(Verification& all, const VerifyPlan& plan) {
+  for (const auto& of : all.scenes) {
+    const std::size_t tasks_before = all.tasks.size(), left_out_before = all.left_out.size();
     for (const MethodEntry& method : methods()) {
       if (method.is_condensed && !of.scene.settings.quasi_static) continue;  // it has no motion
       MethodChoice choice{
           .method = std::string(method.name), .precision = plan.precision, .processor = plan.processor};
-      if (plan.processor && !plan.processor->refusal(of.scene.materials, choice).empty()) continue;
-      tasks.push_back({&of, choice});
+      if (std::string reason; plan.processor != nullptr &&
+                              !(reason = plan.processor->refusal(of.scene.materials, choice)).empty()) {
+        all.left_out.push_back({of.scene.settings.name, choice.method, std::move(reason)});
+        continue;
+      }
+      all.tasks.push_back({&of, choice});
       // A condensed method has the curve of the method that it condenses.
       if (!method.kappa_affects_equilibrium || method.is_condensed) continue;
       for (const double kappa : of.references.comparison.kappas) {
         choice.kappa = kappa;
-        tasks.push_back({&of, choice});
+        all.tasks.push_back({&of, choice});
       }
     }
+    if (all.tasks.size() == tasks_before && all.left_out.size() > left_out_before)
+      throw InputError(fmt::format("{}: nothing can be computed on this device: {}",
+                                   of.scene.settings.file.string(), all.left_out[left_out_before].reason));
   }
-  return tasks;
 }
 
-/// The limits of a scene for methods that were computed: a device may refuse some.
+/// The limits of a scene for methods that were computed.
 std::vector<Expectation> limits_of(const VerifiedScene& scene, const std::vector<Task>& tasks) {
   std::vector<Expectation> limits = scene.references.comparison.expectations;
   std::erase_if(limits, [&](const Expectation& limit) {
@@ -89,7 +95,7 @@ Verification verify(std::vector<Scene> scenes, const VerifyPlan& plan, const Pro
     References references = read_references(scene);
     all.scenes.push_back({std::move(scene), std::move(references)});
   }
-  all.tasks = make_tasks(all.scenes, plan);
+  add_tasks(all, plan);
   run_all(all, plan.threads, progress);
   if (plan.costs && plan.processor == nullptr) add_costs(all, plan.threads, progress);
   for (const VerifiedScene& of : all.scenes) {
