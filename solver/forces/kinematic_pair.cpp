@@ -185,9 +185,9 @@ class KinematicPair final : public SurfacePair {
     });
   }
 
-  /// The share of the speed at which a point arrived that it may leave with: with all of it, points under a
-  /// lasting load would oscillate from step to step.
-  static constexpr double returned = 0.5;
+  /// The share of the speed at which a point arrived that it may leave with: with 0.4 or more, points under a
+  /// lasting load may oscillate from step to step.
+  static constexpr double returned = 0.3;
 
   /// The share of its depth by which such a point leaves in a step beyond that: a depth does not last.
   static constexpr double recovered = 0.02;
