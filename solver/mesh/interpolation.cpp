@@ -284,7 +284,7 @@ std::vector<std::pair<LineWithin, std::size_t>> overlaps(const NodalField& point
       near.insert(near.end(), here.begin(), here.end());
     }
     std::ranges::sort(near);
-    near.erase(std::ranges::unique(near).begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
     for (const std::size_t e : near) {
       if (std::ranges::find_first_of(cells[e], line.nodes) != cells[e].end()) continue;
       const auto part = part_within(boxes[e], line.from, way);
