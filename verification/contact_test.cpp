@@ -304,6 +304,10 @@ TEST(Contact, presses_a_column_as_derived) {
     EXPECT_NEAR(last.depth, depth, within);
     EXPECT_NEAR(last.reactions.at("plate")[2], -force, E * within / L * 2.0);
     EXPECT_NEAR(last.reactions.at("foot")[2], force, E * within / L * 2.0);
+    // The middle of the column is the arm from the point of the plate.
+    const double found_force = last.reactions.at("plate")[2];
+    const Vector moment{found_force * 1.0, found_force * -0.5, 0.0};
+    EXPECT_LT(distance(last.moments.at("plate"), moment), 1e-6 * force);
     EXPECT_NEAR(last.contact, stiffness * depth * (0.5 * depth + first), stiffness * first * within);
   }
 }

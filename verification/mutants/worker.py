@@ -143,9 +143,9 @@ class Worker:
         with self._applied(patch) as since:
             failure = self._failure(patch, programs, since, seconds)
         if failure and failure.kind != "broken":
-            self._kills[patch.files, failure.program.name] += 1
             if failure.by not in self._passed and not self._passes(failure):
                 return replace(failure, kind="false alarm")
+            self._kills[patch.files, failure.program.name] += 1
             self._passed.add(failure.by)
         return failure
 
