@@ -27,7 +27,7 @@ from rivals.program import Run
 SPEED = 0.1
 CURVE_RATE = 15 / 8  # the largest slope of the loading curve of eq. 15
 # The longer run of a motion has at least three times the steps and, in programs that step quickly,
-# this many elements times steps, half a second, so that the difference exceeds the start-up time.
+# this many elements times steps, a fifth of a second of ours, which exceeds the start-up time.
 MANY = 2e7
 # The lines of `sandglass run` about the steps of a motion, and the evaluations of a static run.
 STEPS = r"in (\d+) steps of"

@@ -1,6 +1,7 @@
 """`--device opencl` of run, verify and bench; device_test.cpp compares its forces and motions."""
 
 import json
+import os
 import re
 
 import pytest
@@ -69,6 +70,14 @@ def test_bench_leaves_out_scenes_whose_state_cannot_stay_there():
 )
 def test_what_a_device_cannot_do_is_refused(arguments, reason):
     assert reason in sandglass(*arguments, code=2).stderr
+
+
+def test_a_device_with_small_work_groups_is_refused():
+    small = os.environ | {"POCL_MAX_WORK_GROUP_SIZE": "32"}
+    found = sandglass("run", "column", "--device", "opencl", env=small)
+    if found.returncode == 0:
+        pytest.skip("the device is not that of pocl")
+    assert found.returncode == 2 and "runs groups of at most 32 work items" in found.stderr
 
 
 VISCOELASTIC = """[case]

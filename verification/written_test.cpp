@@ -141,9 +141,9 @@ std::vector<std::vector<Real>> results_in_c(const ForceProgram& force,
   const TemporaryFolder folder;
   std::ofstream(folder / "kernel.c") << kernel_text<Real>(force, dialects().front(), {"forces", {"A test."}});
   const auto library = (folder / "kernel.so").string();
-  const std::string compile = fmt::format(
-      "{} -O2 -std=c99 -Wall -Werror -Wno-unused-function -ffp-contract=off -shared -fPIC {} -o {} -lm",
-      SANDGLASS_C_COMPILER, (folder / "kernel.c").string(), library);
+  const std::string compile =
+      fmt::format("{} -O2 -std=c99 -Wall -Wextra -Werror -ffp-contract=off -shared -fPIC {} -o {} -lm",
+                  SANDGLASS_C_COMPILER, (folder / "kernel.c").string(), library);
   EXPECT_EQ(std::system(compile.c_str()), 0) << compile;
   void* const loaded = dlopen(library.c_str(), RTLD_NOW);
   if (loaded == nullptr) return {};
