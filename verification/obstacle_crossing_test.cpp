@@ -101,7 +101,7 @@ struct Jump {
                                  {std::as_const(inverse).data(), places},
                                  1.0,
                                  memory.data()});
-      contact.end_level(factors, now, memory.data());
+      contact.end_level(factors, now, false, memory.data());
     }
     return contact.touch(memory.data());
   }

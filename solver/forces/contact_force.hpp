@@ -220,16 +220,17 @@ class ContactForce : public BodyForce {
   virtual bool correct_contact(Row<double>* /*memory*/) const { return false; }
 
   /// Augments it: the forces of this evaluation become constant forces of the nodes that touch, beside those
-  /// of their further depths, or ends that. In the next equilibrium they penetrate less. Returns whether any
-  /// has a constant force.
+  /// of their further depths, or ends that. In the next equilibrium they penetrate less. Returns whether a
+  /// constant force has changed.
   virtual bool augment(bool /*augmented*/, Row<double>* /*memory*/) const { return false; }
 
   /// Whether its forces in static equilibrium depend on the load levels before.
   virtual bool remembers_path() const { return false; }
 
   /// At the end of a load level, in the equilibrium of the last evaluation: from here friction follows the
-  /// next one.
-  virtual void end_level(Factors /*factors*/, NodalRows /*u*/, Row<double>* /*memory*/) const {}
+  /// next one. If the level may be shortened, nodes that came around a corner count as passed.
+  virtual void end_level(Factors /*factors*/, NodalRows /*u*/, bool /*may_shorten*/,
+                         Row<double>* /*memory*/) const {}
 
   /// Adds the potential (J) with these forces.
   virtual void add_contact_potential(Factors factors, NodalRows u, const Row<double>* memory,

@@ -69,13 +69,15 @@ class RestingContact final : public ObstacleContact {
     });
   }
 
-  void end_level(Factors factors, NodalRows u, Row<double>* rows) const override {
+  void end_level(Factors factors, NodalRows u, bool may_shorten, Row<double>* rows) const override {
     ContactMemory memory(rows);
     for_each_gap(path_.at(factors), u, [&](std::size_t k, const Vector& x, const Gap& gap) {
       Row<double>* of_node = memory.others + by_node() * k;
       Row<double>& last = of_node[1];
       const Vector way = last[3] == 0.0 ? Vector{} : difference(x, {last[0], last[1], last[2]});
-      if (passes(x, gap, way)) memory.note_passed(nodes_[k].node);
+      const bool is_followed = may_shorten && of_node[0][3] != not_at_all;
+      if (passes(x, gap, way) || (is_followed && rounds_a_corner(x, gap, way)))
+        memory.note_passed(nodes_[k].node);
       last = {{x[0], x[1], x[2], 1.0}};
       if (!rubs()) return;
       Row<double>&from = of_node[2], &stretch = of_node[3];
@@ -190,6 +192,14 @@ class RestingContact final : public ObstacleContact {
     const Row<double>& from = of_node[2];
     const Vector place = sum(undeformed(k), 1.0, {from[0], from[1], from[2]});
     return way_along(difference(x, place), gap.normal, gap.distance, gap_at(place).distance);
+  }
+
+  /// Whether a node that touches, and comes to a place x (m, in its frame) with this gap straight along a way
+  /// (m), came from another side: then the way does not show on which side the load leaves it.
+  bool rounds_a_corner(const Vector& x, const Gap& gap, const Vector& way) const {
+    constexpr double same_side = 0.5;  // the cosine of the largest turn of the normal
+    return length(way) > shallow * half_of_shape() &&
+           dot(gap_at(difference(x, way)).normal, gap.normal) < same_side;
   }
 
   /// Whether a node that slips would now slip back: friction that stops it would push it to and fro.

@@ -185,7 +185,7 @@ void TriangleSurface::compare(const Vector& x, std::size_t triangle, Closest& cl
   const TriangleFoot foot = TriangleFoot::of(X, x);
   const Vector point = point_of(X, foot.weights), from = difference(x, point);
   const double square = dot(from, from);
-  if (square < closest.square) closest = {square, point, normals_[triangle][foot.feature]};
+  if (square < closest.square) closest = {square, point, normals_[triangle][foot.feature], foot.feature == 0};
 }
 
 double TriangleSurface::half_thickness() const {
@@ -194,9 +194,11 @@ double TriangleSurface::half_thickness() const {
 }
 
 Gap TriangleSurface::at(const Vector& x) const {
-  Closest closest{INFINITY, {}, {}};
+  Closest closest{INFINITY, {}, {}, false};
   tree_.search(x, boxes_.data(), closest.square, [&](int t) { compare(x, sandglass::at(t), closest); });
   const Vector from = difference(x, closest.point);
+  // Close to a face, the direction from the closest point is rounding.
+  if (closest.is_face) return {dot(from, closest.normal), closest.normal};
   const double r = std::sqrt(closest.square), side = dot(from, closest.normal) < 0.0 ? -1.0 : 1.0;
   if (r == 0.0) return {0.0, direction_of(closest.normal, length(closest.normal))};
   return {side * r, sum({}, side / r, from)};

@@ -37,6 +37,7 @@ class TriangleSurface {
     double square;  // of the distance, m^2
     Vector point;
     Vector normal;  // of the feature
+    bool is_face;
   };
 
   const Vector& point(int n) const { return points_[static_cast<std::size_t>(n)]; }

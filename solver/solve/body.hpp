@@ -134,9 +134,10 @@ class Body {
   bool augment_contact(bool augmented) { return loads_.augment_contact(augmented); }
 
   /// See Loads::end_level.
-  void end_level() {
-    most_carried_ = std::max(most_carried_, carried());
-    loads_.end_level(state_.u);
+  Touch end_level(bool may_shorten) {
+    const Touch through = loads_.end_level(state_.u, may_shorten);
+    if (through.passed < 0) most_carried_ = std::max(most_carried_, carried());
+    return through;
   }
 
   /// See Loads::correct_contact.

@@ -53,8 +53,8 @@ constexpr int steps_between_contacts = 5;
 /// they are fewer, which excludes cycles (Portugal, Judice and Vicente 1994).
 constexpr int most_failed_updates = 3;
 
-/// Further updates do not count as progress.
-constexpr int most_updates = 100;
+/// Further updates do not count as progress, if shorter increments may help (brief) or not.
+constexpr int most_updates = 100, most_brief_updates = 20;
 
 /// A saddle is left by this change of displacement gradients, doubled repeatedly. Directions whose potentials
 /// differ by less than this share of their fall count as equal; the first is taken.
@@ -173,7 +173,7 @@ void Equilibrium<Real>::update_contact() {
   mixed_.set_drags();
   contact_.norm = mixed_.norm();
   contact_.steps = 0;
-  if (++contact_.updates > most_updates) return;
+  if (++contact_.updates > (effort_ == Effort::brief ? most_brief_updates : most_updates)) return;
   progress_ = {contact_.norm};
   acceleration_.clear();
 }

@@ -215,9 +215,16 @@ class LoadLevels {
     aim();
   }
 
-  /// Resets the body to the last load level and halves the increment; false after too many attempts.
+  /// Whether this level may be shortened to follow a path around corners of obstacles. Where a node snaps
+  /// around one, no level is short enough.
+  bool may_shorten() const { return in_a_row_ < most_for_corners; }
+
+  /// Resets the body to the last load level.
+  void restart(Body<Real>& body) const { body.state() = last_.state; }
+
+  /// The same, and halves the increment; false after too many attempts.
   bool failed(Body<Real>& body) {
-    body.state() = last_.state;
+    restart(body);
     increment_ = 0.5 * std::abs(increment());
     aim();
     ++in_a_row_;
@@ -262,7 +269,7 @@ class LoadLevels {
   static constexpr double largest_strain = 0.3;
 
   /// The number of halvings in a row, to a few millionths of the load increment.
-  static constexpr int most_in_a_row = 20;
+  static constexpr int most_in_a_row = 20, most_for_corners = 4;
 
   /// Levels solved between failures may approach a load without ever passing it.
   static constexpr int most_failures = 200;

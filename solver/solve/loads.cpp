@@ -261,10 +261,17 @@ bool Loads<Real>::augment_contact(bool augmented) {
 }
 
 template <class Real>
-void Loads<Real>::end_level(const Rows<Real>& u) {
+Touch Loads<Real>::end_level(const Rows<Real>& u, bool may_shorten) {
+  const Rows<double> before = memory_;
   const Rows<double> there = loaded(u);
   for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c]->end_level(factors_, by_node(there.data()), memory_.data() + memory_of_[c]);
+    contacts_[c]->end_level(factors_, by_node(there.data()), may_shorten, memory_.data() + memory_of_[c]);
+  Touch through;
+  for_each_touch([&](const Touch& touch) {
+    if (touch.passed >= 0) through = touch;
+  });
+  if (through.passed >= 0) memory_ = before;
+  return through;
 }
 
 template <class Real>

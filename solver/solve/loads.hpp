@@ -65,8 +65,9 @@ class Loads {
   /// See ContactForce::augment; of all obstacles.
   bool augment_contact(bool augmented);
 
-  /// See ContactForce::end_level; at displacements u (m).
-  void end_level(const Rows<Real>& u);
+  /// See ContactForce::end_level; at displacements u (m). Returns how a node touches that may have passed
+  /// through; then the level has not ended.
+  Touch end_level(const Rows<Real>& u, bool may_shorten);
 
   /// Changes one node of all obstacles; see ContactForce::correct_contact.
   void correct_contact();

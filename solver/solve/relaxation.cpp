@@ -38,16 +38,16 @@ class Search {
         equilibrium_(model, elements),
         adaption_(model, equilibrium_.body()),
         load_levels_(model, equilibrium_.body(), depends_on_path(model, elements)),
-        touches_(equilibrium_.may_touch()),
         no_velocity_(model.masses().size()),
         reactions_(model.scene().constraints.size(), 0.0),
-        next_check_(settings_.check_interval) {}
+        next_check_(settings_.check_interval),
+        augmented_(!equilibrium_.may_touch()) {}
 
   Relaxation run(const Checkpoint* from) {
     if (from != nullptr) {
       keep(CheckpointReader(*from));
     } else {
-      body().end_level();
+      body().end_level(false);
       observer_.frame(frame_of(body(), 0.0, no_velocity_));
       report();
     }
@@ -58,7 +58,8 @@ class Search {
         return checkpoint;
       });
       load_levels_.predict(equilibrium_);
-      if (load_levels_.advances() && is_healthy(body()) && solve() && descend_from_saddles()) {
+      if (load_levels_.advances() && is_healthy(body()) && solve() && descend_from_saddles() &&
+          stays_outside()) {
         finish_load_level();
       } else if (!ended_) {
         retry_load_level();
@@ -78,16 +79,21 @@ class Search {
     const auto& coarser = model_.scene().coarser;
     if (!coarser.empty()) equilibrium_.average_pressures(coarser.front().element_of);
     if (!solve() || (result_.stagnated && !result_.rounded)) return std::nullopt;
-    if (!descend_from_saddles()) return std::nullopt;
+    if (!descend_from_saddles() || !stays_outside()) return std::nullopt;
     observer_.frame(rest);
     finish_load_level();
     return finish();
   }
 
  private:
-  /// The residual at which elements first choose their levels at the full load, and obstacles are augmented;
-  /// levels that would still change at smaller residuals are corrected at the end.
+  /// The residual at which elements first choose their levels at the full load, and contact is first
+  /// augmented; levels that would still change at smaller residuals are corrected at the end.
   static constexpr double moderate_tolerance = 1e-3;
+
+  /// Contact is augmented this often, each time at a residual of this share of the last: nodes then sink into
+  /// obstacles by 1e-6 of an edge, and the depth at the first residual no longer influences the answer.
+  static constexpr int most_augmentations = 3;
+  static constexpr double share_of_augmentation = 0.1;
 
   /// Elements without stiffness against hourglass modes have a stable equilibrium on coarse meshes only; the
   /// search for one ends after this many evaluations.
@@ -124,8 +130,11 @@ class Search {
 
   /// At the full load.
   double tolerance() const {
-    const bool moderate = (adaption_.active() && !settled_) || (touches_ && !augmented_);
-    return moderate ? std::max(settings_.tolerance, moderate_tolerance) : settings_.tolerance;
+    double tolerance = settings_.tolerance;
+    if (is_unsettled()) tolerance = std::max(tolerance, moderate_tolerance);
+    if (!augmented_)
+      tolerance = std::max(tolerance, moderate_tolerance * std::pow(share_of_augmentation, augmentations_));
+    return tolerance;
   }
 
   /// Relative time: the length of the load path, plus, at the full load, further evaluations over the earlier
@@ -152,9 +161,9 @@ class Search {
     std::optional<std::pair<State<Real>, std::vector<Real>>>
         best;  // since only rounding is left, during which a search may drift
     double least = INFINITY;
-    bool augmented = augmented_;
+    int augmentations = augmentations_;
     while (!arrived() || settle()) {
-      if (std::exchange(augmented, augmented_) != augmented_) {
+      if (std::exchange(augmentations, augmentations_) != augmentations_) {
         stagnation = Stagnation(epsilon, amplification_);
         best.reset();
         least = INFINITY;
@@ -231,21 +240,28 @@ class Search {
     return equilibrium_.at_rounding() && (residual < most_residual || equilibrium_.bears_nothing());
   }
 
-  /// Augments obstacles once, in the equilibrium at the full load; returns whether the search must continue.
+  /// Whether elements have not yet chosen their levels.
+  bool is_unsettled() const { return adaption_.active() && !settled_; }
+
+  /// Augments contact near the equilibrium at the full load, only once before elements have chosen their
+  /// levels; returns whether the search must continue.
   bool augment() {
-    if (!load_levels_.full() || std::exchange(augmented_, true) || !body().augment_contact(true))
-      return false;
+    if (!load_levels_.full() || augmented_ || (is_unsettled() && augmentations_ > 0)) return false;
+    const bool changed = body().augment_contact(true);
+    if (changed) ++augmentations_;
+    augmented_ = !changed || augmentations_ == augmentations_asked_;
+    if (!changed) return false;
     equilibrium_.start(load_levels_.effort());
     return true;
   }
 
   /// Whether the search may end: not with an inverted element, as another equilibrium may be near, and at the
-  /// full load with the nodes that touch obstacles there, after one augmented step.
+  /// full load with the nodes that touch obstacles there, after contact is augmented.
   bool arrived() {
     if (load_levels_.full() && equilibrium_.residual() < tolerance()) equilibrium_.update_contact();
     const auto found = [this] { return near() || (at_rounding() && equilibrium_.bears_nothing()); };
     if (!found() || !is_healthy(body())) return false;
-    return augmented_ || (!augment() && found());
+    return !augment() && found();
   }
 
   bool near() const {
@@ -272,11 +288,15 @@ class Search {
     return true;
   }
 
+  /// Ends contact's load level; returns whether no node may have passed through. Shorter levels help.
+  bool stays_outside() {
+    through_ = body().end_level(load_levels_.may_shorten());
+    return through_.passed < 0;
+  }
+
   void finish_load_level() {
     result_.converged = load_levels_.full() && !result_.stagnated;
     ended_ = load_levels_.full() || equilibrium_.evaluations() >= most_evaluations_;
-    body().end_level();
-    require_not_passed(body().touch(), model_.scene().mesh.points, "load", load_levels_.load());
     add_work();
     report();
     if (ended_) return;
@@ -293,9 +313,16 @@ class Search {
 
   void retry_load_level() {
     const State<Real> failed = body().state();
-    augmented_ = body().augment_contact(false);
+    const Touch through = std::exchange(through_, {});
+    body().augment_contact(false);
+    augmented_ = !equilibrium_.may_touch();
+    if (std::exchange(augmentations_, 0) > 1 && through.passed < 0) {
+      augmentations_asked_ = 1;
+      return load_levels_.restart(body());
+    }
     if (load_levels_.failed(body())) return;
     body().state() = failed;
+    require_not_passed(through, model_.scene().mesh.points, "load", load_levels_.load());
     const std::string where =
         fmt::format("the last equilibrium is at {:.6g} of the load", load_levels_.solved_load());
     try {
@@ -364,16 +391,18 @@ class Search {
   Equilibrium<Real> equilibrium_;
   Adaption<Real> adaption_;
   LoadLevels<Real> load_levels_;
-  bool touches_;  // whether it may touch obstacles
   NodalField no_velocity_;
   Relaxation result_;
   std::vector<double> reactions_;
   double work_ = 0.0;
-  long first_evaluation_ = 0;  // of this load level
-  long next_check_;            // evaluations
-  bool lowered_ = false;       // whether elements could be demoted at the full load
-  bool settled_ = false;       // whether levels no longer changed at a moderate residual
-  bool augmented_ = false;     // whether obstacles have been
+  long first_evaluation_ = 0;                     // of this load level
+  long next_check_;                               // evaluations
+  bool lowered_ = false;                          // whether elements could be demoted at the full load
+  bool settled_ = false;                          // whether levels no longer changed at a moderate residual
+  int augmentations_ = 0;                         // of contact, at this load level
+  int augmentations_asked_ = most_augmentations;  // one, if none is found without depth, as in grooves
+  bool augmented_;                                // whether contact need not be augmented further
+  Touch through_;                                 // how a node touched that passed through in this load level
   bool ended_ = false;
 };
 
