@@ -81,10 +81,10 @@ Solving solving(const Arguments& given) {
 }
 
 /// A case that was solved: immutable.
-class Answer : public NeverUnmade {
+class SolvedCase : public NeverUnmade {
  public:
   /// Throws InputError and ComputationError as `sandglass run` does.
-  Answer(const std::string& case_text, MeshArrays mesh, const Solving& how, Watch& watch)
+  SolvedCase(const std::string& case_text, MeshArrays mesh, const Solving& how, Watch& watch)
       : problem_(with_mesh(case_text, checked(std::move(mesh)))), scene_(make_scene(problem_)) {
     choice_ = method_of(scene_.settings);
     choice_.threads = how.threads;
@@ -310,16 +310,16 @@ void add_answers(py::module_& m) {
       },
       "points"_a, "cells"_a, "sets"_a, "element_sets"_a, "A mesh of arrays, checked, with sorted sets.");
 
-  py::class_<Answer>(m, "Answer", "A case that was solved; see sandglass.Solution.")
-      .def_property_readonly("frames", &Answer::frames, "The number of frames, with the undeformed body.")
-      .def("frame", &Answer::frame, "number"_a, "The arrays of a frame.")
-      .def("history", &Answer::history, "The columns of the history.")
-      .def("summary", &Answer::summary, "How it was found.")
-      .def("estimate", &Answer::estimate, "against"_a,
+  py::class_<SolvedCase>(m, "Answer", "A case that was solved; see sandglass.Solution.")
+      .def_property_readonly("frames", &SolvedCase::frames, "The number of frames, with the undeformed body.")
+      .def("frame", &SolvedCase::frame, "number"_a, "The arrays of a frame.")
+      .def("history", &SolvedCase::history, "The columns of the history.")
+      .def("summary", &SolvedCase::summary, "How it was found.")
+      .def("estimate", &SolvedCase::estimate, "against"_a,
            "The largest and the rms distance from the mean-dilatation answer or from the truth, m.")
       .def(
           "gradient",
-          [](const Answer& answer, const py::object& displacements,
+          [](const SolvedCase& answer, const py::object& displacements,
              const std::map<std::string, Vector>& reactions, bool materials, bool points) {
             return answer.gradient(displacements, reactions, {.parameters = materials, .points = points});
           },
@@ -327,23 +327,23 @@ void add_answers(py::module_& m) {
           "The derivatives of a scalar by everything; see sandglass.Solution.")
       .def(
           "sensitivity",
-          [](const Answer& answer, const std::vector<std::map<std::string, double>>& materials,
+          [](const SolvedCase& answer, const std::vector<std::map<std::string, double>>& materials,
              const py::object& forces, const py::object& imposed) {
             return answer.derivatives().sensitivity(materials, forces, imposed);
           },
           "materials"_a, "forces"_a, "imposed"_a,
           "The derivative of the displacements along a change; see sandglass.Solution.")
-      .def("write", &Answer::write, "path"_a, "writer"_a, "Writes a result file.")
+      .def("write", &SolvedCase::write, "path"_a, "writer"_a, "Writes a result file.")
       .def(
           "mesh",
-          [](const Answer& answer) {
+          [](const SolvedCase& answer) {
             const Scene& scene = answer.scene();
             return tuple_of({scene.mesh, scene.sets, scene.element_sets});
           },
           "The mesh, with the sets of all rules, after refinement.")
       .def(
           "boundary",
-          [](const Answer& answer) {
+          [](const SolvedCase& answer) {
             const auto& faces = answer.scene().boundary;
             return copied<int>(faces, {count(faces), 4});
           },
@@ -354,7 +354,7 @@ void add_answers(py::module_& m) {
          const std::map<std::string, py::object>& element_sets, const std::string& case_text,
          const py::dict& arguments, const py::object& progress) {
         Watch watch(progress);
-        return std::make_unique<Answer>(case_text, mesh_arrays(points, cells, sets, element_sets),
+        return std::make_unique<SolvedCase>(case_text, mesh_arrays(points, cells, sets, element_sets),
                                         solving(Arguments(arguments)), watch);
       },
       "points"_a, "cells"_a, "sets"_a, "element_sets"_a, "case_text"_a, "arguments"_a, "progress"_a,

@@ -38,7 +38,7 @@ std::unique_ptr<AnyBatch> made(const py::object& points, const py::object& cells
 }
 
 /// Displacements (bodies, 3), or (bodies, nodes of the set, 3).
-void move(AnyBatch& self, const std::string& set, const Doubles& displacements) {
+void move_bodies(AnyBatch& self, const std::string& set, const Doubles& displacements) {
   with(self, [&](auto& batch) {
     const auto* row = reinterpret_cast<const std::array<double, 3>*>(displacements.data());
     const auto each = displacements.ndim() == 3 ? static_cast<std::size_t>(displacements.shape(1)) : 0;
@@ -60,7 +60,7 @@ void for_each_body(AnyBatch& self, const Doubles& numbers, const Apply& apply) {
   });
 }
 
-py::array displacements(AnyBatch& self) {
+py::array displacements_of_bodies(AnyBatch& self) {
   return with(self, [](const auto& batch) {
     Doubles all(
         {static_cast<py::ssize_t>(batch.bodies()), static_cast<py::ssize_t>(batch.nodes()), py::ssize_t{3}});
@@ -72,7 +72,7 @@ py::array displacements(AnyBatch& self) {
   });
 }
 
-py::array reactions(AnyBatch& self, const std::string& set) {
+py::array reactions_of_bodies(AnyBatch& self, const std::string& set) {
   return with(self, [&](const auto& batch) {
     std::vector<std::array<double, 3>> rows;
     for (std::size_t b = 0; b < batch.bodies(); ++b) rows.push_back(batch.reaction(b, set));
@@ -86,7 +86,7 @@ void add_batches(py::module_& m) {
   using namespace pybind11::literals;
   py::class_<AnyBatch>(m, "Batch", "Many bodies of one case; see sandglass.Batch.")
       .def(py::init(&made), "points"_a, "cells"_a, "sets"_a, "element_sets"_a, "case_text"_a, "arguments"_a)
-      .def("move", &move, "set"_a, "displacements"_a, "Targets of driven nodes.")
+      .def("move", &move_bodies, "set"_a, "displacements"_a, "Targets of driven nodes.")
       .def(
           "scale_stiffness",
           [](AnyBatch& self, const Doubles& factors) {
@@ -110,8 +110,8 @@ void add_batches(py::module_& m) {
           "advance",
           [](AnyBatch& self, double seconds) { with(self, [&](auto& batch) { batch.advance(seconds); }); },
           "seconds"_a, py::call_guard<py::gil_scoped_release>(), "Advances in time.")
-      .def("displacements", &displacements, "Displacements, m, (bodies, nodes, 3).")
-      .def("reactions", &reactions, "set"_a, "Reactions, N, (bodies, 3).")
+      .def("displacements", &displacements_of_bodies, "Displacements, m, (bodies, nodes, 3).")
+      .def("reactions", &reactions_of_bodies, "set"_a, "Reactions, N, (bodies, 3).")
       .def(
           "nodes",
           [](AnyBatch& self, const std::string& set) {
