@@ -7,16 +7,20 @@ function(add_generated target template output)
   target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/kernels/${output})
 endfunction()
 
-# The kernels of the library, which compute as many elements at a time as a register holds; and those that compute one element at a time,
-# for the tests and benchmarks that compare with them.
-foreach(target sandglass_packed sandglass_scalar)
-  add_library(${target} OBJECT)
+# The kernels of the library, which compute as many elements at a time as a register holds; and those that compute one element at a time:
+# for `sandglass-scalar`, which times them, and for tests.
+add_library(sandglass_packed OBJECT)
+add_library(sandglass_scalar OBJECT EXCLUDE_FROM_ALL)
+add_library(sandglass_scalar_untimed OBJECT EXCLUDE_FROM_ALL)
+foreach(target sandglass_packed sandglass_scalar sandglass_scalar_untimed)
   compile_as_library(${target})
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_link_libraries(${target} PRIVATE fmt::fmt OpenMP::OpenMP_CXX)
 endforeach()
 precompile_headers(sandglass_packed <assembly/kernels.hpp>)
 reuse_precompiled_headers(sandglass_scalar sandglass_packed)
+compile_quickly(sandglass_scalar_untimed)
+precompile_headers(sandglass_scalar_untimed <assembly/kernels.hpp>)
 target_sources(sandglass_library PRIVATE $<TARGET_OBJECTS:sandglass_packed>)
 
 # The laws that kernels call, for a number type and its header; a further argument is the type of their parameters.
@@ -61,5 +65,7 @@ foreach(HEADER IN LISTS METHODS)
   endforeach()
   set(NUMBER double)
   set(KERNELS "scalar_kernels<${TYPE}>")
-  add_generated(sandglass_scalar assembly/kernels_source.cpp.in ${METHOD}/scalar.cpp)
+  foreach(target sandglass_scalar sandglass_scalar_untimed)
+    add_generated(${target} assembly/kernels_source.cpp.in ${METHOD}/scalar.cpp)
+  endforeach()
 endforeach()

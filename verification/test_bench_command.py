@@ -7,17 +7,14 @@ import os
 import re
 
 import pytest
-from command_line import BINARY, documented, methods, ran
+from command_line import documented, methods, ran
 
 FIGURES = """
 ns_per_element_step ns_best ns_lower_quartile ns_upper_quartile check_ns_per_element_step
-ratio_to_tl_perturbation speedup_over_scalar_double step_p50_us step_p99_us step_max_us
+ratio_to_tl_perturbation step_p50_us step_p99_us step_max_us
 operations_per_element_step bytes_per_element_step gflops fraction_of_peak gbs
 fraction_of_bandwidth stream_gbs_at_working_set roofline_fraction
 """.split()
-
-# The same program with kernels that compute one element at a time.
-SCALAR = BINARY + "-scalar"
 
 # A condensed method answers directly and takes no steps in time.
 WITHOUT_MOTION = {"linear-condensed"}
@@ -28,7 +25,7 @@ OF_MOTION = ("mean_step_seconds", "seconds_per_simulated_second")
 def tiny():
     """One short run of everything: its output and its file."""
     command = "bench --elements 64 --repetitions 1 --threads 1 2"
-    outcome, document = documented(command, program=SCALAR, code=0)
+    outcome, document = documented(command, code=0)
     return outcome.stdout, document
 
 
@@ -44,7 +41,7 @@ def test_cubes_take_fewer_operations_and_bytes_than_other_bricks():
 
 def test_every_method_in_every_variant(tiny):
     found = {(r["method"], r["kernel"], r["precision"], r["threads"]) for r in tiny[1]["records"]}
-    numbers = [("pack", "double"), ("pack", "float"), ("scalar", "double")]
+    numbers = [("pack", "double"), ("pack", "float")]
     assert found == {(m, *n, t) for m in methods() for n in numbers for t in (1, 2)}
     assert len(tiny[1]["records"]) == len(found)
 
@@ -78,13 +75,7 @@ def test_figures_follow_from_each_other(tiny):
             r["bytes_per_element_step"] / r["stream_gbs_at_working_set"],
         )
         assert r["roofline_fraction"] == pytest.approx(bound / ns)
-        yardstick = next(
-            other["ns_per_element_step"]
-            for other in document["records"]
-            if (other["method"], other["threads"], other["kernel"])
-            == (r["method"], r["threads"], "scalar")
-        )
-        assert r["speedup_over_scalar_double"] == pytest.approx(yardstick / ns)
+        assert r["speedup_over_scalar_double"] is None  # sandglass-scalar measures it
 
 
 def test_json_names_its_source(tiny):
@@ -151,21 +142,16 @@ def test_condensed_methods_are_left_out_of_large_meshes():
 
 def test_a_case_and_a_choice(block):
     command = f"bench {block} --methods tl-full --precision float --threads 1 --repetitions 2"
-    records = documented(command, program=SCALAR, code=0)[1]["records"]
-    assert [(r["case"], r["elements"], r["kernel"], r["precision"]) for r in records] == [
-        ("block", 16, "pack", "float"),
-        ("block", 16, "scalar", "double"),  # the yardstick
-    ]
-    assert all(r["ratio_to_tl_perturbation"] is None for r in records)
-    assert all(r["speedup_over_scalar_double"] > 0.0 for r in records)
+    (record,) = documented(command, code=0)[1]["records"]
+    assert (record["case"], record["elements"], record["kernel"]) == ("block", 16, "pack")
+    assert record["precision"] == "float" and record["ratio_to_tl_perturbation"] is None
 
 
-def test_without_scalar_kernels_packs_are_compared_with_doubles(block):
+def test_forces_are_compared_with_doubles(block):
     command = f"bench {block} --methods tl-full --threads 1 --repetitions 1"
     double, single = documented(command, code=0)[1]["records"]
     assert (double["kernel"], single["kernel"]) == ("pack", "pack")
     assert double["force_difference"] == 0.0 and single["force_difference"] > 0.0
-    assert double["speedup_over_scalar_double"] is None
 
 
 def test_rest(block):
