@@ -54,7 +54,7 @@ constexpr int steps_between_contacts = 5;
 constexpr int most_failed_updates = 3;
 
 /// Further updates do not count as progress, if shorter increments may help (brief) or not.
-constexpr int most_updates = 100, most_brief_updates = 20;
+constexpr int most_updates = 100, most_brief_updates = 50;
 
 /// A saddle is left by this change of displacement gradients, doubled repeatedly. Directions whose potentials
 /// differ by less than this share of their fall count as equal; the first is taken.
