@@ -355,7 +355,7 @@ void add_answers(py::module_& m) {
          const py::dict& arguments, const py::object& progress) {
         Watch watch(progress);
         return std::make_unique<SolvedCase>(case_text, mesh_arrays(points, cells, sets, element_sets),
-                                        solving(Arguments(arguments)), watch);
+                                            solving(Arguments(arguments)), watch);
       },
       "points"_a, "cells"_a, "sets"_a, "element_sets"_a, "case_text"_a, "arguments"_a, "progress"_a,
       "Solves a case.");
