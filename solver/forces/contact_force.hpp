@@ -88,6 +88,9 @@ constexpr double not_at_all = 0.0, sticking = 1.0, slipping = 2.0;
 /// slipped along an obstacle that moved ahead of them, too deep in them, friction would throw them.
 enum class Fixing { none, all, friction };
 
+/// Of contact in static equilibrium: none, or for the first time in a search, or again.
+enum class Augmentation { none, first, further };
+
 /// Whether a point that is fixed to touch so may stay, as it would touch if it were `free`. One that may slip
 /// sticks where friction holds it: if it always slipped, its force would turn around as its spring shortens.
 constexpr bool agrees(double fixed, double free) {
@@ -219,10 +222,10 @@ class ContactForce : public BodyForce {
   /// none.
   virtual bool correct_contact(Row<double>* /*memory*/) const { return false; }
 
-  /// Augments it: the forces of this evaluation become constant forces of the nodes that touch, beside those
-  /// of their further depths, or ends that. In the next equilibrium they penetrate less. Returns whether a
-  /// constant force has changed.
-  virtual bool augment(bool /*augmented*/, Row<double>* /*memory*/) const { return false; }
+  /// Augments it, for the first time in this search or again: the forces of this evaluation become constant
+  /// forces of the nodes that touch, beside those of their further depths; or ends that. In the next
+  /// equilibrium they penetrate less. Returns whether it is augmented now.
+  virtual bool augment(Augmentation /*augmentation*/, Row<double>* /*memory*/) const { return false; }
 
   /// Whether its forces in static equilibrium depend on the load levels before.
   virtual bool remembers_path() const { return false; }

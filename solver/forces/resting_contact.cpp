@@ -94,11 +94,12 @@ class RestingContact final : public ObstacleContact {
     });
   }
 
-  bool augment(bool augmented, Row<double>* memory) const override {
+  bool augment(Augmentation augmentation, Row<double>* memory) const override {
     bool any = false;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       Row<double>& of_node = ContactMemory(memory).others[by_node() * k];
-      of_node[2] = augmented && of_node[3] != 0.0 ? std::max(of_node[1] + of_node[2], 0.0) : 0.0;
+      const bool touches = augmentation != Augmentation::none && of_node[3] != not_at_all;
+      of_node[2] = touches ? std::max(of_node[1] + of_node[2], 0.0) : 0.0;
       any = any || of_node[2] > 0.0;
     }
     return any;

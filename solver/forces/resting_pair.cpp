@@ -136,24 +136,23 @@ class RestingPair final : public SurfacePair {
   }
 
   /// Once only: points of both surfaces without any depth would be more conditions than nodes can satisfy.
-  bool augment(bool augmented, Row<double>* rows) const override {
+  bool augment(Augmentation augmentation, Row<double>* rows) const override {
     ContactMemory memory(rows);
-    if (augmented && memory.others[0][is_augmented] != 0.0) return false;
+    if (augmentation == Augmentation::further) return false;
     bool any = false;
     for_each_point(memory, [&](const Side& /*side*/, std::size_t /*k*/, Row<double>* of_point) {
       double& constant = of_point[1][constant_depth];
-      const bool touches = augmented && of_point[0][strength] > 0.0;
+      const bool touches = augmentation == Augmentation::first && of_point[0][strength] > 0.0;
       constant = touches ? std::max(of_point[1][depth_now] + constant, 0.0) : 0.0;
       any = any || constant > 0.0;
     });
-    memory.others[0][is_augmented] = memory.others[0][chooses_again] = any ? 1.0 : 0.0;
+    memory.others[0][chooses_again] = any ? 1.0 : 0.0;
     return any;
   }
 
  private:
-  /// What the pair remembers besides: whether it is augmented, and whether the next evaluation that is not
-  /// fixed chooses triangles again.
-  enum OfRestingPair : std::size_t { is_augmented = 2, chooses_again = 3 };
+  /// What the pair remembers besides: whether the next evaluation that is not fixed chooses triangles again.
+  enum OfRestingPair : std::size_t { chooses_again = 3 };
 
   /// What points remember in their second row.
   enum OfRestingPoint : std::size_t { triangle = 0, contrary = 1, depth_now = 2, constant_depth = 3 };

@@ -131,7 +131,7 @@ class Body {
   void fix_contact(Fixing fixing) { loads_.fix_contact(fixing); }
 
   /// See Loads::augment_contact.
-  bool augment_contact(bool augmented) { return loads_.augment_contact(augmented); }
+  bool augment_contact(Augmentation augmentation) { return loads_.augment_contact(augmentation); }
 
   /// See Loads::end_level.
   Touch end_level(bool may_shorten) {

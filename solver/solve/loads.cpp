@@ -253,10 +253,10 @@ void Loads<Real>::fix_contact(Fixing fixing) {
 }
 
 template <class Real>
-bool Loads<Real>::augment_contact(bool augmented) {
+bool Loads<Real>::augment_contact(Augmentation augmentation) {
   bool any = false;
   for (std::size_t c = 0; c < contacts_.size(); ++c)
-    any = contacts_[c]->augment(augmented, memory_.data() + memory_of_[c]) || any;
+    any = contacts_[c]->augment(augmentation, memory_.data() + memory_of_[c]) || any;
   return any;
 }
 

@@ -63,7 +63,7 @@ class Loads {
   void fix_contact(Fixing fixing);
 
   /// See ContactForce::augment; of all obstacles.
-  bool augment_contact(bool augmented);
+  bool augment_contact(Augmentation augmentation);
 
   /// See ContactForce::end_level; at displacements u (m). Returns how a node touches that may have passed
   /// through; then the level has not ended.

@@ -217,6 +217,7 @@ class Search {
         return true;
       }
       result_.stability = Stability::saddle_left;
+      augment_again();
       if (left == most_saddles || !equilibrium_.leave(softest.falling, left > 0) || (!search() && !ended_)) {
         throw ComputationError(
             fmt::format("the equilibrium found is unstable: the smallest eigenvalue of the current stiffness "
@@ -247,12 +248,19 @@ class Search {
   /// levels; returns whether the search must continue.
   bool augment() {
     if (!load_levels_.full() || augmented_ || (is_unsettled() && augmentations_ > 0)) return false;
-    const bool changed = body().augment_contact(true);
+    const bool changed =
+        body().augment_contact(augmentations_ == 0 ? Augmentation::first : Augmentation::further);
     if (changed) ++augmentations_;
     augmented_ = !changed || augmentations_ == augmentations_asked_;
     if (!changed) return false;
     equilibrium_.start(load_levels_.effort());
     return true;
+  }
+
+  /// Augments contact from the start in the next search; returns how often it was augmented in the last one.
+  int augment_again() {
+    augmented_ = !equilibrium_.may_touch();
+    return std::exchange(augmentations_, 0);
   }
 
   /// Whether the search may end: not with an inverted element, as another equilibrium may be near, and at the
@@ -314,9 +322,8 @@ class Search {
   void retry_load_level() {
     const State<Real> failed = body().state();
     const Touch through = std::exchange(through_, {});
-    body().augment_contact(false);
-    augmented_ = !equilibrium_.may_touch();
-    if (std::exchange(augmentations_, 0) > 1 && through.passed < 0) {
+    body().augment_contact(Augmentation::none);
+    if (augment_again() > 1 && through.passed < 0) {
       augmentations_asked_ = 1;
       return load_levels_.restart(body());
     }
