@@ -292,6 +292,7 @@ class Search {
       if (!adaption_.active() || !std::exchange(settled_, true)) return adaption_.active();
       if (!adaption_.promote_for_the_whole(body())) return false;
     }
+    if (settled_) augment_again();
     equilibrium_.start(load_levels_.effort());
     return true;
   }
