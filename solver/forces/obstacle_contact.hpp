@@ -173,10 +173,10 @@ inline bool ObstacleContact::passes(const Vector& x, const Gap& gap, const Vecto
   if (start.distance + gap.distance >= far) return false;
   constexpr double beyond_right_angle = -0.01;  // as sides of a box are, to the rounding of a file
   const bool turned = dot(start.normal, gap.normal) < beyond_right_angle;
-  if (turned && gap.distance < 0.0) return true;
+  if (gap.distance < 0.0) return turned;
   if (!turned && (is_short || obstacle_.inside)) return false;
   constexpr double finest = 1e-3;  // of the way
-  const double least = turned ? finest * far : std::min(gap.distance, 0.0) - most_cut;
+  const double least = turned ? finest * far : -most_cut;
   for (double done = 0.0; done < 1.0;) {
     const double distance = gap_at(sum(x, done - 1.0, way)).distance;
     if (distance < least) return true;

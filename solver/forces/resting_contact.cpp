@@ -75,8 +75,9 @@ class RestingContact final : public ObstacleContact {
       Row<double>* of_node = memory.others + by_node() * k;
       Row<double>& last = of_node[1];
       const Vector way = last[3] == 0.0 ? Vector{} : difference(x, {last[0], last[1], last[2]});
-      const bool is_followed = may_shorten && of_node[0][3] != not_at_all;
-      if (passes(x, gap, way) || (is_followed && rounds_a_corner(x, gap, way)))
+      const bool touches = of_node[0][3] != not_at_all;  // without any depth, to rounding
+      const Gap there{touches ? std::min(gap.distance, -rounding_) : gap.distance, gap.normal};
+      if (passes(x, there, way) || (may_shorten && touches && rounds_a_corner(x, gap, way)))
         memory.note_passed(nodes_[k].node);
       last = {{x[0], x[1], x[2], 1.0}};
       if (!rubs()) return;

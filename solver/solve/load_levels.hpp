@@ -217,7 +217,10 @@ class LoadLevels {
 
   /// Whether this level may be shortened to follow a path around corners of obstacles. Where a node snaps
   /// around one, no level is short enough.
-  bool may_shorten() const { return in_a_row_ < most_for_corners; }
+  bool may_shorten() const { return corners_ < most_for_corners; }
+
+  /// Notes that a node came around a corner, or passed through an obstacle, in this level.
+  void note_corner() { ++corners_; }
 
   /// Resets the body to the last load level.
   void restart(Body<Real>& body) const { body.state() = last_.state; }
@@ -253,6 +256,7 @@ class LoadLevels {
     archive("solved levels", solved_);
     archive("failures", failures_);
     archive("failures in a row", in_a_row_);
+    archive("failures at corners", corners_);
     last_.state = body.state();
   }
 
@@ -269,7 +273,10 @@ class LoadLevels {
   static constexpr double largest_strain = 0.3;
 
   /// The number of halvings in a row, to a few millionths of the load increment.
-  static constexpr int most_in_a_row = 20, most_for_corners = 4;
+  static constexpr int most_in_a_row = 20;
+
+  /// Levels that are shortened for corners, in all.
+  static constexpr int most_for_corners = 6;
 
   /// Levels solved between failures may approach a load without ever passing it.
   static constexpr int most_failures = 200;
@@ -330,6 +337,7 @@ class LoadLevels {
   int solved_ = 0;
   int failures_ = 0;
   int in_a_row_ = 0;
+  int corners_ = 0;
   Solved last_;
   Before before_;
 };

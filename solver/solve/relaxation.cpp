@@ -300,7 +300,9 @@ class Search {
   /// Ends contact's load level; returns whether no node may have passed through. Shorter levels help.
   bool stays_outside() {
     through_ = body().end_level(load_levels_.may_shorten());
-    return through_.passed < 0;
+    if (through_.passed < 0) return true;
+    load_levels_.note_corner();
+    return false;
   }
 
   void finish_load_level() {
