@@ -8,21 +8,9 @@
 #include "element/one_point.hpp"
 #include "math/row_loops.hpp"
 #include "solve/equilibrium.hpp"
+#include "solve/span.hpp"
 
 namespace sandglass {
-
-/// Twice the largest distance (m) of some points from their mean, which does not depend on their orientation.
-inline double span(const NodalField& points) {
-  const double count = static_cast<double>(points.size());
-  Vector mean{};
-  for (const Vector& x : points) {
-    for (std::size_t i = 0; i < 3; ++i) mean[i] += x[i] / count;
-  }
-  double radius = 0.0;
-  for (const Vector& x : points)
-    radius = std::max(radius, length({x[0] - mean[0], x[1] - mean[1], x[2] - mean[2]}));
-  return 2.0 * radius;
-}
 
 /// The largest changes of the factors of curves per load.
 inline std::vector<double> largest_changes(const Scene& scene) {

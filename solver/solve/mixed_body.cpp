@@ -7,6 +7,7 @@
 #include "assembly/method_entry.hpp"
 #include "math/row_loops.hpp"
 #include "solve/model_moduli.hpp"
+#include "solve/span.hpp"
 
 namespace sandglass {
 
@@ -81,6 +82,7 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
   }
   const double amplification = std::max(1.0, largest_lambda_over_mu(materials_));  // of the rounding of J - 1
   unfelt_ = std::min(rounding<Real> * amplification, most_rounding) * stiffest;
+  farthest_ = span(model.scene().mesh.points) + largest_imposed(model.scene());
 }
 
 template <class Real>
@@ -271,7 +273,8 @@ bool MixedBody<Real>::at_rounding(bool in_both) {
 
 template <class Real>
 bool MixedBody<Real>::bears_nothing() const {
-  const double square = sum_over_components([](double, double u) { return u * u; });
+  const double most = farthest_ * farthest_;
+  const double square = sum_over_components([most](double, double u) { return std::min(u * u, most); });
   return body_.carried() <= unfelt_ * std::sqrt(square);
 }
 

@@ -204,6 +204,7 @@ class MixedBody {
   LawStiffening stiffening_;
   std::vector<double> lambdas_;  // Pa
   double unfelt_ = 0.0;          // N/m, reactions over displacements that may be rounding
+  double farthest_;              // m, displacements of a body that does not fly away
   bool linear_;
   bool pressure_varies_;
   Rows<Real> free_;

@@ -162,6 +162,7 @@ class Search {
         best;  // since only rounding is left, during which a search may drift
     double least = INFINITY;
     int augmentations = augmentations_;
+    result_.stagnated = result_.rounded = false;
     while (!arrived() || settle()) {
       if (std::exchange(augmentations, augmentations_) != augmentations_) {
         stagnation = Stagnation(epsilon, amplification_);
