@@ -107,7 +107,7 @@ value = [0.0, 0.0, 0.0]
                                                       body + settings);
   const Scene scene = read_scene(path);
   Recorder recorder;
-  const Relaxation found = relax(Model(scene, {"tl-mean-dilatation"}), recorder);
+  Relaxation found = relax(Model(scene, {"tl-mean-dilatation"}), recorder);
   EXPECT_TRUE(found.converged);
   EXPECT_EQ(found.stability, Stability::stable);
   return found;
