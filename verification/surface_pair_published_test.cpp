@@ -217,13 +217,14 @@ Simulation<double> wedge(double slope, double friction, Contact::Method method, 
 /// NAFEMS CGS-4: F / G = (tan a + mu) / (1 - mu tan a). The wedge is fast until all of the interface slips,
 /// then so slow that damping adds at most 1e-3 of F. Found within .06 %, as FrontISTR, by the elastic tilt of
 /// the interface; a penalty of 10 errs by .19 %, of 1 by .95 %. Before all of it slips, F is too small. If
-/// points oscillate from step to step, kinematic contact loses 1 to 3 % of the force: with a coefficient of
-/// 0.1 in half of the motions that differ by rounding when points return half of their speed.
+/// points oscillate from step to step, kinematic contact loses 1 to 3 % of the force. Whether they do may be
+/// a matter of rounding, hence nine motions that differ by it: if points that touch also return half of their
+/// speed, every second one fails.
 TEST(SurfacePair, pushes_a_wedge_uphill_with_the_published_force) {
   constexpr double slope = 0.1, weight = 40.0;
   for (const auto method : both_methods) {
-    for (const auto& [friction, rounding] :
-         {std::pair{0.0, 0.0}, {0.1, 0.0}, {0.1, 5e-13}, {0.1, 7e-13}, {0.2, 0.0}, {0.3, 0.0}}) {
+    for (int n = 0; n < (method == Contact::Method::kinematic ? 12 : 4); ++n) {
+      const double friction = n < 4 ? 0.1 * n : 0.1, rounding = 1e-13 * n;
       Simulation<double> simulation = wedge(slope, friction, method, 1100.0 * (1.0 + rounding));
       simulation.advance(3.0);
       simulation.move("pushed", {0.15, 0.0, 0.0});

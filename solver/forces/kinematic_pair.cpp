@@ -38,7 +38,7 @@ class KinematicPair final : public SurfacePair {
       const Meeting meeting = meeting_of(side, k, memory);
       const auto [end, n] = MovingSurface::directions(
           foot, x, meeting.onto.corners_now(foot.face, meeting.of_onto), meeting.corners_before(nodes));
-      remembered[4] = {{end[0], end[1], end[2], motion_to_leave(meeting, n, nodes)}};
+      remembered[4] = {{end[0], end[1], end[2], motion_to_leave(meeting, n, is_new, nodes)}};
       remembered[1] = weights_before(meeting, n, nodes);
       remembered[2] = {{n[0], n[1], n[2], is_new ? 0.0 : remembered[2][3]}};
       const Vector along{remembered[3][0], remembered[3][1], remembered[3][2]};
@@ -185,21 +185,23 @@ class KinematicPair final : public SurfacePair {
     });
   }
 
-  /// The share of the speed at which a point arrived that it may leave with: with 0.4 or more, points under a
-  /// lasting load may oscillate from step to step.
-  static constexpr double returned = 0.3;
+  /// The share of the speed at which a point meets the face with which it may leave. Points that touched in
+  /// the last step may not: under a lasting load they would oscillate from step to step, and lose force.
+  static constexpr double returned = 0.5;
 
   /// The share of its depth by which such a point leaves in a step beyond that: a depth does not last.
   static constexpr double recovered = 0.02;
 
   /// The motion (m) along n with which a point may leave the face in this step, from that in the last.
-  static double motion_to_leave(const Meeting& meeting, const Vector& n, const NodalPush& nodes) {
+  static double motion_to_leave(const Meeting& meeting, const Vector& n, bool is_new,
+                                const NodalPush& nodes) {
     Vector last{};
     meeting.for_each_node([&](int node, std::size_t, double weight, const Row<double>*, Row<double>*) {
       for (std::size_t i = 0; i < 3; ++i) last[i] += weight * nodes.last[node][i];
     });
     const double arrived = dot(last, n);
-    return arrived < 0.0 ? returned * arrived : arrived;
+    if (arrived >= 0.0) return arrived;
+    return is_new ? returned * arrived : 0.0;
   }
 
   /// Changes the impulse of a point so that it is on the face. Returns by how much it moves, m.
