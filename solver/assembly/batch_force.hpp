@@ -10,6 +10,7 @@
 #include "assembly/element_block.hpp"
 #include "assembly/method_entry.hpp"
 #include "assembly/strip_walk.hpp"
+#include "base/hot_loop.hpp"
 #include "element/method_traits.hpp"
 #include "material/material_axes.hpp"
 #include "material/memory.hpp"
@@ -123,8 +124,8 @@ class BatchLoop final : public BatchForce<Number> {
   }
 
   /// Adds the forces of groups `first` to `last` - 1, which are of one material.
-  [[gnu::flatten]] void add_forces(std::size_t first, std::size_t last, const Number* u,
-                                   Number* force) const {
+  SANDGLASS_HOT_LOOP void add_forces(std::size_t first, std::size_t last, const Number* u,
+                                     Number* force) const {
     const auto law = law_of(layout_.groups[first].material);
     walk_strips(
         layout_, first, last, gather_from(u),
@@ -137,8 +138,8 @@ class BatchLoop final : public BatchForce<Number> {
         [&](const FaceModes<Number>& sum, std::size_t face) { add_to_face(sum, force, face); });
   }
 
-  [[gnu::flatten]] void widen(typename BatchForce<Number>::Extremes& all, std::size_t group,
-                              const Number* u) const {
+  SANDGLASS_HOT_LOOP void widen(typename BatchForce<Number>::Extremes& all, std::size_t group,
+                                const Number* u) const {
     const std::size_t material = layout_.groups[group].material;
     const auto law = law_of(material);
     const Number share_of_density(static_cast<Real>(share_of_node(densities_[material])));

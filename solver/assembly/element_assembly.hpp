@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "assembly/levelled_elements.hpp"
+#include "base/hot_loop.hpp"
 #include "material/material_axes.hpp"
 #include "material/memory.hpp"
 
@@ -121,11 +122,11 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
     const auto laws = laws_at(state.step);
-    this->per_element(
-        state, bounds, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
-          return KernelOf<Method>::stiffness_bound(motion, element, history<Method>(state, at.pack),
-                                                   with_axes(laws[at.material], at.axes));
-        });
+    this->per_element(state, bounds,
+                      [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
+                        return stiffness_bound<Method>(motion, element, history<Method>(state, at.pack),
+                                                       with_axes(laws[at.material], at.axes));
+                      });
   }
 
   Adaptation adapt(State<Real>& state, const Rows<Real>& mobility, double length,
@@ -187,14 +188,23 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   std::vector<Law> laws_;  // of each material
 
  private:
-  /// Runs in every step of a motion's derivatives, hence `flatten`; see ForceLoop.
+  /// Runs in every step of a motion's derivatives.
   template <class Method, class Element, class LawAtStep>
-  [[gnu::flatten]] static Number power(const ElementMotion<Number>& motion, const Element& element,
-                                       HistoryBlock<Method> remembered, const LawAtStep& law,
-                                       const NodalVectors<Number>& v) {
+  SANDGLASS_HOT_LOOP static Number power(const ElementMotion<Number>& motion, const Element& element,
+                                         HistoryBlock<Method> remembered, const LawAtStep& law,
+                                         const NodalVectors<Number>& v) {
     using Kernel = KernelOf<Method>;
     return double_dot(
         from_modes(Kernel::force(Kernel::deformation(motion, element), element, remembered, law)), v);
+  }
+
+  /// Runs at every check of a motion, and in every evaluation of some searches.
+  template <class Method, class Element, class LawAtStep>
+  SANDGLASS_HOT_LOOP static Number stiffness_bound(const ElementMotion<Number>& motion,
+                                                   const Element& element,
+                                                   const HistoryBlock<Method>& remembered,
+                                                   const LawAtStep& law) {
+    return KernelOf<Method>::stiffness_bound(motion, element, remembered, law);
   }
 
   auto laws_at(double step) const {
@@ -255,9 +265,9 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   }
 
   /// The squares (m^2) of the defects of the elements between a face of the layout and the next one.
-  [[gnu::flatten]] std::array<Number, top> squared_defects(const Rows<Real>& u, const Rows<Real>& mobility,
-                                                           std::size_t face, std::size_t material,
-                                                           const MaterialAxes<Number>* axes) const {
+  SANDGLASS_HOT_LOOP std::array<Number, top> squared_defects(const Rows<Real>& u, const Rows<Real>& mobility,
+                                                             std::size_t face, std::size_t material,
+                                                             const MaterialAxes<Number>* axes) const {
     const auto modes = [&](const Rows<Real>& rows) {
       return modes_between(gather_face_modes<Number>(rows, *layout_, face),
                            gather_face_modes<Number>(rows, *layout_, face + 1));
@@ -336,13 +346,11 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
     });
   }
 
-  /// Adds the forces of groups `first` to `last` - 1 of a part. Without `flatten` the compiler leaves small
-  /// matrix functions out of line, which costs a third of the time.
+  /// Adds the forces of groups `first` to `last` - 1 of a part.
   template <class Method>
-  [[gnu::flatten, gnu::aligned(64)]] void add_forces(const typename Base::template Part<Method>& part,
-                                                     std::size_t first, std::size_t last,
-                                                     const LoopLaw& loop_law, State<Real>& state,
-                                                     Real* force) const {
+  SANDGLASS_HOT_LOOP void add_forces(const typename Base::template Part<Method>& part, std::size_t first,
+                                     std::size_t last, const LoopLaw& loop_law, State<Real>& state,
+                                     Real* force) const {
     using Kernel = typename Base::template KernelOf<Method>;
     const ElementGroups& groups = *part.groups;
     const auto law =

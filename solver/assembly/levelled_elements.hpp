@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 #include "assembly/internal_force.hpp"
 #include "assembly/strip_walk.hpp"
 #include "base/error.hpp"
+#include "base/hot_loop.hpp"
 #include "base/type_list.hpp"
 #include "element/method_traits.hpp"
 #include "element/replaced_pressure.hpp"
@@ -147,7 +149,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
   void smallest_jacobians(const State<Real>& state, std::span<double> jacobians) const override {
     per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, BlockPlace) {
-      return KernelOf<Method>::smallest_jacobian(motion, element);
+      return smallest_jacobian<Method>(motion, element);
     });
   }
 
@@ -222,22 +224,16 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   template <class Visit>
   void for_each_block(const State<Real>& state, const Visit& visit) const {
     const std::vector<Real> volumes = volumes_around_nodes(state);
-    const Number inverse_step(static_cast<Real>(1.0 / state.step));
-    const auto visit_part = [&]<class Method>(const Part<Method>& part, std::size_t c) {
-      walk_strips(
-          *part.groups, part.first, part.last,
-          [&](std::size_t face, std::size_t material) {
-            return gather_face<Method>(*part.groups, state, volumes.data(), material, face);
-          },
-          [&](const FaceMotion& lower, const FaceMotion& upper, const StripPlace& at) {
-            visit.template operator()<Method>(motion_between<KernelOf<Method>>(lower, upper, inverse_step),
-                                              part.block(at.pack),
-                                              BlockPlace{at, c, part.axes_at(at.pack), part.groups.get()},
-                                              [&](const auto& use) { part.for_each_lane(at.pack, use); });
-          });
-    };
+    const std::tuple<Visitor<Methods>...> visitors{
+        [&visit](const auto& motion, const auto& part, const auto& at) {
+          visit.template operator()<Methods>(motion, part.block(at.pack), at,
+                                             [&](const auto& use) { part.for_each_lane(at.pack, use); });
+        }...};
     for (std::size_t c = layout_->own_chunks.first; c < layout_->own_chunks.last; ++c) {
-      std::apply([&](const auto&... part) { (visit_part(part, c), ...); }, *plan_of(state).chunks[c]);
+      const Parts& parts = *plan_of(state).chunks[c];
+      (visit_blocks(std::get<Part<Methods>>(parts), c, state, volumes.data(),
+                    std::get<Visitor<Methods>>(visitors)),
+       ...);
     }
   }
 
@@ -336,8 +332,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
   /// Adds the nodal volumes of a part's elements of materials with a number, in the order of the forces.
   template <class Method>
-  [[gnu::flatten, gnu::aligned(64)]] void add_volumes(const Part<Method>& part, const State<Real>& state,
-                                                      std::size_t alike, Real* volumes) const {
+  SANDGLASS_HOT_LOOP void add_volumes(const Part<Method>& part, const State<Real>& state, std::size_t alike,
+                                      Real* volumes) const {
     if constexpr (KernelOf<Method>::averages_over_nodes) {
       const ElementGroups& groups = *part.groups;
       for (std::size_t g = part.first; g < part.last; ++g) {
@@ -364,10 +360,10 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
   /// The part of `replace_pressures` of the elements of a part.
   template <class Method>
-  [[gnu::flatten, gnu::aligned(64)]] void add_pressures(const Part<Method>& part, const State<Real>& state,
-                                                        const Real* volumes, std::span<const Real> p,
-                                                        std::span<const double> lambdas, Real* force,
-                                                        std::span<Real> defect) const {
+  SANDGLASS_HOT_LOOP void add_pressures(const Part<Method>& part, const State<Real>& state,
+                                        const Real* volumes, std::span<const Real> p,
+                                        std::span<const double> lambdas, Real* force,
+                                        std::span<Real> defect) const {
     const ElementGroups& groups = *part.groups;
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
     walk_strips(
@@ -387,6 +383,33 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
           return on_faces(f);
         },
         [&](const Faces& sum, std::size_t face) { scatter_face_modes(sum, force, groups, face); });
+  }
+
+  /// Runs at every check of a motion or a search.
+  template <class Method, class Element>
+  SANDGLASS_HOT_LOOP static Number smallest_jacobian(const ElementMotion<Number>& motion,
+                                                     const Element& element) {
+    return KernelOf<Method>::smallest_jacobian(motion, element);
+  }
+
+  /// What is done with the motion of a block of elements, without a type of its own, so that all uses share
+  /// one loop.
+  template <class Method>
+  using Visitor = std::function<void(const ElementMotion<Number>&, const Part<Method>&, const BlockPlace&)>;
+
+  template <class Method>
+  SANDGLASS_HOT_LOOP void visit_blocks(const Part<Method>& part, std::size_t chunk, const State<Real>& state,
+                                       const Real* volumes, const Visitor<Method>& visit) const {
+    const Number inverse_step(static_cast<Real>(1.0 / state.step));
+    walk_strips(
+        *part.groups, part.first, part.last,
+        [&](std::size_t face, std::size_t material) {
+          return gather_face<Method>(*part.groups, state, volumes, material, face);
+        },
+        [&](const FaceMotion& lower, const FaceMotion& upper, const StripPlace& at) {
+          visit(motion_between<KernelOf<Method>>(lower, upper, inverse_step), part,
+                {at, chunk, part.axes_at(at.pack), part.groups.get()});
+        });
   }
 
   std::unique_ptr<const Regrouping> regrouping_;  // of methods that adapt

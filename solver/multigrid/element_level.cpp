@@ -9,6 +9,7 @@
 
 #include "assembly/chunk_sum.hpp"
 #include "assembly/strip_walk.hpp"
+#include "base/hot_loop.hpp"
 #include "element/linear_one_point.hpp"
 #include "element/perturbation_stiffness.hpp"
 #include "math/pack.hpp"
@@ -231,7 +232,7 @@ class Elements final : public ElementLevel {
     };
   }
 
-  [[gnu::flatten]] void apply_to(const Layout::Chunk& chunk, const MixedVector& x, MixedVector& y) const {
+  SANDGLASS_HOT_LOOP void apply_to(const Layout::Chunk& chunk, const MixedVector& x, MixedVector& y) const {
     walk_strips(
         layout_, chunk.first, chunk.last, gather_from(x.u),
         [&](const auto& lower, const auto& upper, const StripPlace& at) {
@@ -245,8 +246,8 @@ class Elements final : public ElementLevel {
         scatter_to(y.u));
   }
 
-  [[gnu::flatten]] void diverge(const Layout::Chunk& chunk, const Rows<float>& u,
-                                std::vector<float>& g) const {
+  SANDGLASS_HOT_LOOP void diverge(const Layout::Chunk& chunk, const Rows<float>& u,
+                                  std::vector<float>& g) const {
     walk_strips(layout_, chunk.first, chunk.last, gather_from(u),
                 [&](const auto& lower, const auto& upper, const StripPlace& at) {
                   const Block& block = elements_[at.pack];
@@ -259,8 +260,8 @@ class Elements final : public ElementLevel {
                 });
   }
 
-  [[gnu::flatten]] void add_gradients(const Layout::Chunk& chunk, const std::vector<float>& p,
-                                      Rows<float>& f) const {
+  SANDGLASS_HOT_LOOP void add_gradients(const Layout::Chunk& chunk, const std::vector<float>& p,
+                                        Rows<float>& f) const {
     const auto nothing = [](std::size_t /*face*/, std::size_t /*material*/) { return 0; };
     walk_strips(
         layout_, chunk.first, chunk.last, nothing,
@@ -300,8 +301,8 @@ class Elements final : public ElementLevel {
     return largest;
   }
 
-  [[gnu::flatten]] float set_blocks(const Layout::Chunk& chunk, const std::vector<ModelModuli>& moduli,
-                                    const std::vector<float>& stiffening) {
+  SANDGLASS_HOT_LOOP float set_blocks(const Layout::Chunk& chunk, const std::vector<ModelModuli>& moduli,
+                                      const std::vector<float>& stiffening) {
     Number largest(1.0f);
     for_each_pack(layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
       const auto [pack, face, material] = at;
@@ -334,7 +335,7 @@ class Elements final : public ElementLevel {
     return 1.05f * largest_lane(largest);
   }
 
-  [[gnu::flatten]] void add_diagonals(const Layout::Chunk& chunk) {
+  SANDGLASS_HOT_LOOP void add_diagonals(const Layout::Chunk& chunk) {
     for_each_pack(layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
       const NodalVectors<Number> g = nodal_gradients(elements_[at.pack]);
       for (std::size_t I = 0; I < std::size_t{g.rows}; ++I) {
