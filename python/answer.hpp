@@ -19,7 +19,8 @@ namespace sandglass {
 /// false.
 class NeverUnmade {
  public:
-  static void* operator new(std::size_t size) {
+  // Inlined, as `delete` is; otherwise GCC 12 sees memory of a function that `free` does not match.
+  [[gnu::always_inline]] static void* operator new(std::size_t size) {
     if (void* memory = std::calloc(1, size)) return memory;
     throw std::bad_alloc();
   }
