@@ -292,6 +292,15 @@ TEST(Materials, another_material_is_another_answer) {
   EXPECT_NE(hash_with("[0.0, 2.0]", "[0.0, 3.0]"), hash);
 }
 
+/// Of any material, first or last: lambda / mu = 2 nu / (1 - 2 nu).
+TEST(Materials, the_least_compressible_counts) {
+  const Material stiff{sample_law<NeoHookean>(0.45, 30000.0), 1000.0};
+  const Material soft{sample_law<NeoHookean>(0.25, 30000.0), 1000.0};
+  EXPECT_NEAR(largest_lambda_over_mu({{stiff}}), 9.0, 1e-12);
+  EXPECT_NEAR(largest_lambda_over_mu({{stiff, soft}}), 9.0, 1e-12);
+  EXPECT_NEAR(largest_lambda_over_mu({{soft, stiff}}), 9.0, 1e-12);
+}
+
 TEST(Materials, wrong_input_is_refused) {
   const TemporaryFolder folder;
   const auto said = [&](const std::string& from, const std::string& to) {
