@@ -375,12 +375,13 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
           const auto lambda = static_cast<Real>(lambdas[at.material]);
           Number own(Real(0));
           part.for_each_lane(at.pack, [&](std::size_t e, int lane) { Lanes<Number>::set(own, lane, p[e]); });
-          const auto [f, error] = replace_pressure<Method>(
+          const auto replaced = replace_pressure<Method>(
               motion_between<KernelOf<Method>>(lower, upper, inverse_step), part.block(at.pack).body, own,
               Number(lambda), Number(Real(1) / lambda), setups_[at.material].law);
-          part.for_each_lane(at.pack,
-                             [&](std::size_t e, int lane) { defect[e] = Lanes<Number>::get(error, lane); });
-          return on_faces(f);
+          part.for_each_lane(at.pack, [&](std::size_t e, int lane) {
+            defect[e] = Lanes<Number>::get(replaced.defect, lane);
+          });
+          return on_faces(replaced.force);
         },
         [&](const Faces& sum, std::size_t face) { scatter_face_modes(sum, force, groups, face); });
   }
