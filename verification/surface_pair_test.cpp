@@ -126,9 +126,9 @@ Vector centre_of(const std::vector<int>& nodes, const NodalField& field, const s
 }
 
 /// Friction stops a slab after the way v^2 / (2 mu g) and takes its energy; its force never exceeds the
-/// coefficient times the normal force, of each point: of all to 2 %, as faces turn, and to 10 % where a point
-/// at the edge, whose direction is up to 11 degrees from the others, has a tenth of the force. The slab
-/// bounces on its elasticity, which a few percent allow for.
+/// coefficient times the normal force, of each point: of all to 2 %, as faces turn, and in one of a hundred
+/// moments to 10 %, when a point at the edge, whose direction is up to 11 degrees from the others, has a
+/// tenth of the force. The slab bounces on its elasticity, which a few percent allow for.
 TEST(SurfacePair, stops_a_slab_by_friction) {
   for (const auto method : both_methods) {
     const double speed = 2.0, time = speed / (coefficient * gravity), way = 0.5 * speed * time;
@@ -138,14 +138,18 @@ TEST(SurfacePair, stops_a_slab_by_friction) {
     Recorder recorder;
     const Motion motion = integrate(model, recorder);
     const double mass = 200.0, energy = 0.5 * mass * speed * speed;
+    std::size_t tilted = 0;
     EXPECT_NEAR(centre_of(bodies.sets.at("upper"), motion.u, model.masses())[0], way, 0.03 * way);
     EXPECT_NEAR(recorder.rows.back().friction, energy, 0.05 * energy);
     for (const HistoryRow& row : recorder.rows) {
       EXPECT_TRUE(row.moments.empty());  // a pair has no point about which to have one
       const Vector& force = row.reactions.at("pair");
-      EXPECT_LE(std::hypot(force[0], force[1]), coefficient * force[2] * 1.1 + 1.0);
+      const double tangential = std::hypot(force[0], force[1]);
+      EXPECT_LE(tangential, coefficient * force[2] * 1.1 + 1.0);
+      if (tangential > coefficient * force[2] * 1.02 + 1.0) ++tilted;
       EXPECT_LE(total_energy(row) - row.external_work, 1.01 * total_energy(recorder.rows.front()));
     }
+    EXPECT_LE(100 * tilted, recorder.rows.size());
   }
 }
 
