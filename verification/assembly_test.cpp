@@ -13,10 +13,10 @@
 #include "mesh/generators.hpp"
 #include "mesh/quality.hpp"
 #include "solve/central_difference.hpp"
+#include "support/method_test.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/path.hpp"
 #include "support/random_hexahedra.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -53,13 +53,12 @@ Mesh sheared_box() {
 }
 
 /// Meshes of all kinds whose elements the method accepts.
-template <class Method = TlPerturbation>
-std::vector<Mesh> meshes() {
+std::vector<Mesh> meshes(std::string_view method = "tl-perturbation") {
   return {box({1, 1, 1}, {1, 1, 1}),
           box({1, 2, 9}, {3, 4, 30}),
           box({3, 2, 2.5}, {13, 11, 12}),
           sheared_box(),
-          fitting_patch<FormulationOf<Method, NeoHookean>>(),
+          fitting_patch(method),
           ring(40),
           EllipsoidMesh{{0.10, 0.085, 0.08}, 6, 2}.build(),
           CylinderMesh{.radius = 0.05, .height = 0.1, .core_elements = 4, .rings = 3, .layers = 9}.build()};
@@ -159,9 +158,8 @@ TEST(LayoutTest, strips_of_a_box_are_long_and_lanes_are_filled) {
   EXPECT_LT(layout.packs() * 8, 24U * 16U * 20U * 101 / 100);
 }
 
-template <class Method>
-class AssemblyTest : public ::testing::Test {};
-TYPED_TEST_SUITE(AssemblyTest, MethodTypes, EntryName);
+class AssemblyTest : public MethodTest {};
+INSTANTIATE_TEST_SUITE_P(, AssemblyTest, each_of(Methods{}), method_label);
 
 /// Forces after two steps of a path, so that methods with memory have something to remember.
 NodalField forces(const Mesh& mesh, const MethodChoice& choice) {
@@ -182,31 +180,28 @@ double tolerance(const Mesh& mesh, double epsilon) {
   return 64 * epsilon * law.bulk_modulus() * area;
 }
 
-TYPED_TEST(AssemblyTest, packs_give_the_forces_of_plain_numbers) {
-  for (const Mesh& mesh : meshes<TypeParam>()) {
-    MethodChoice choice{std::string(TypeParam::name)};
-    const NodalField packed = forces(mesh, choice);
-    choice.kernel = KernelWidth::scalar;
-    EXPECT_LT(largest_distance(packed, forces(mesh, choice)), tolerance(mesh, 2.3e-16));
+TEST_P(AssemblyTest, packs_give_the_forces_of_plain_numbers) {
+  for (const Mesh& mesh : meshes(GetParam())) {
+    MethodChoice scalar = choice();
+    scalar.kernel = KernelWidth::scalar;
+    EXPECT_LT(largest_distance(forces(mesh, choice()), forces(mesh, scalar)), tolerance(mesh, 2.3e-16));
   }
 }
 
-TYPED_TEST(AssemblyTest, threads_do_not_change_a_bit) {
-  for (const Mesh& mesh : meshes<TypeParam>()) {
-    MethodChoice choice{std::string(TypeParam::name)};
-    const NodalField one = forces(mesh, choice);
-    EXPECT_EQ(forces(mesh, choice), one);  // nor does a second run
+TEST_P(AssemblyTest, threads_do_not_change_a_bit) {
+  for (const Mesh& mesh : meshes(GetParam())) {
+    const NodalField one = forces(mesh, choice());
+    EXPECT_EQ(forces(mesh, choice()), one);  // nor does a second run
     for (const int threads : {2, 3, 4}) {
-      choice.threads = threads;
-      EXPECT_EQ(forces(mesh, choice), one);
+      EXPECT_EQ(forces(mesh, choice(Precision::double_precision, threads)), one);
     }
   }
 }
 
-TYPED_TEST(AssemblyTest, numbering_of_the_mesh_does_not_matter) {
+TEST_P(AssemblyTest, numbering_of_the_mesh_does_not_matter) {
   Mesh mesh = box({1, 2, 3}, {3, 4, 5});
-  const NodalField u = wavy(mesh, std::string(TypeParam::name));
-  const NodalField f = Path(mesh, law, {std::string(TypeParam::name)}).to(u);
+  const NodalField u = wavy(mesh, GetParam());
+  const NodalField f = Path(mesh, law, choice()).to(u);
   Mesh reversed = mesh;
   std::ranges::reverse(reversed.points);
   std::ranges::reverse(reversed.cells);
@@ -215,21 +210,19 @@ TYPED_TEST(AssemblyTest, numbering_of_the_mesh_does_not_matter) {
     for (int& node : cell) node = last - node;
   }
   NodalField reversed_u(u.rbegin(), u.rend());
-  NodalField g = Path(reversed, law, {std::string(TypeParam::name)}).to(reversed_u);
+  NodalField g = Path(reversed, law, choice()).to(reversed_u);
   std::ranges::reverse(g);
   EXPECT_LT(largest_distance(f, g), tolerance(mesh, 2.3e-16));
 }
 
 /// Single precision: unit roundoff 6e-8 in place of 1.1e-16.
-TYPED_TEST(AssemblyTest, single_precision_is_as_near_as_its_digits) {
-  for (const Mesh& mesh : meshes<TypeParam>()) {
-    const auto elements = std::get<1>(
-        make_internal_force(mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
-    State<float> state = state_at(*elements, wavy(mesh, std::string(TypeParam::name)));
+TEST_P(AssemblyTest, single_precision_is_as_near_as_its_digits) {
+  for (const Mesh& mesh : meshes(GetParam())) {
+    const auto elements = std::get<1>(make_internal_force(mesh, law, choice(Precision::single_precision)));
+    State<float> state = state_at(*elements, wavy(mesh, GetParam()));
     Rows<float> force(state.u.size());
     elements->evaluate(state, force);
-    const NodalField exact =
-        Path(mesh, law, {std::string(TypeParam::name)}).to(wavy(mesh, std::string(TypeParam::name)));
+    const NodalField exact = Path(mesh, law, choice()).to(wavy(mesh, GetParam()));
     EXPECT_LT(largest_distance(to_field(force, elements->layout()), exact), tolerance(mesh, 1.2e-7));
   }
 }
@@ -238,17 +231,15 @@ TYPED_TEST(AssemblyTest, single_precision_is_as_near_as_its_digits) {
 /// be rounded in the same direction, by the digits of the whole sum. A node's displacement is at most 2.5 and
 /// rounded to 6e-8 of that, strains to twice that over .1, and energies go with their squares: 6e-6; the rest
 /// is the kernel's rounding.
-TYPED_TEST(AssemblyTest, energies_of_many_elements_add_up_in_single_precision) {
+TEST_P(AssemblyTest, energies_of_many_elements_add_up_in_single_precision) {
   const Mesh mesh = box({24, 24, 24}, {24, 24, 24});
   NodalField u;
   for (const auto& X : mesh.points) {
     const double zigzag = std::lround(X[0] + X[1] + X[2]) % 2 == 0 ? 0.05 : -0.05;
     u.push_back({0.1 * X[0] + zigzag, -0.03 * X[1], 0.02 * X[2]});
   }
-  MethodChoice choice{std::string(TypeParam::name)};
-  const auto exact = std::get<0>(make_internal_force(mesh, law, choice));
-  choice.precision = Precision::single_precision;
-  const auto elements = std::get<1>(make_internal_force(mesh, law, choice));
+  const auto exact = std::get<0>(make_internal_force(mesh, law, choice()));
+  const auto elements = std::get<1>(make_internal_force(mesh, law, choice(Precision::single_precision)));
   const StrainEnergies wanted = exact->energies(state_at(*exact, u));
   const StrainEnergies found = elements->energies(state_at(*elements, u));
   EXPECT_NEAR(found.strain / wanted.strain, 1.0, 1e-5);
@@ -258,16 +249,15 @@ TYPED_TEST(AssemblyTest, energies_of_many_elements_add_up_in_single_precision) {
 /// A body 1000 of its lengths from the origin: coordinates enter as differences or relative to the body's
 /// middle, so single precision loses no more than at the origin, except for the rounding of the coordinates
 /// themselves, which is that of double precision.
-TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing) {
+TEST_P(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing) {
   const Mesh here = box({1, 1, 2}, {3, 3, 6});
   Mesh far = here;
   for (auto& X : far.points) {
     for (double& x : X) x += 2000.0;
   }
   const auto force = [&](const Mesh& mesh) {
-    const auto elements = std::get<1>(
-        make_internal_force(mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
-    State<float> state = state_at(*elements, wavy(here, std::string(TypeParam::name)));
+    const auto elements = std::get<1>(make_internal_force(mesh, law, choice(Precision::single_precision)));
+    State<float> state = state_at(*elements, wavy(here, GetParam()));
     Rows<float> rows(state.u.size());
     elements->evaluate(state, rows);
     return to_field(rows, elements->layout());
@@ -276,17 +266,17 @@ TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing
 }
 
 /// A kappa that would be ignored is rejected.
-TYPED_TEST(AssemblyTest, kappa_is_taken_or_refused) {
-  const MethodChoice choice{std::string(TypeParam::name), 0.037};
-  if (TypeParam::Hourglass::traits.takes_kappa) {
-    EXPECT_NO_THROW(make_internal_force(box({1, 1, 1}, {1, 1, 1}), law, choice));
+TEST_P(AssemblyTest, kappa_is_taken_or_refused) {
+  const MethodChoice with_kappa{GetParam(), 0.037};
+  if (method.takes_kappa) {
+    EXPECT_NO_THROW(make_internal_force(box({1, 1, 1}, {1, 1, 1}), law, with_kappa));
   } else {
-    EXPECT_THROW(make_internal_force(Mesh{}, law, choice), InputError);
+    EXPECT_THROW(make_internal_force(Mesh{}, law, with_kappa), InputError);
   }
 }
 
 /// A complete motion: the same bits for any number of threads.
-TYPED_TEST(AssemblyTest, motion_is_the_same_to_the_bit_for_any_number_of_threads) {
+TEST_P(AssemblyTest, motion_is_the_same_to_the_bit_for_any_number_of_threads) {
   Case description = plain_case(law);
   description.quasi_static = false;
   description.dynamics.duration = 0.02;
@@ -295,14 +285,14 @@ TYPED_TEST(AssemblyTest, motion_is_the_same_to_the_bit_for_any_number_of_threads
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })}};
   description.displacements = {{"foot", {}}};
   const Scene scene = make_scene(description, mesh, sets);
-  if (is_condensed<TypeParam>) {
+  if (method.is_condensed) {
     Observer silent;
-    EXPECT_THROW(integrate(Model(scene, {std::string(TypeParam::name)}), silent), InputError);
+    EXPECT_THROW(integrate(Model(scene, choice()), silent), InputError);
     return;
   }
   const auto motion = [&](int threads, Precision precision) {
     Observer silent;
-    return integrate(Model(scene, {std::string(TypeParam::name), {}, precision, threads}), silent);
+    return integrate(Model(scene, choice(precision, threads)), silent);
   };
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
     const Motion one = motion(1, precision);

@@ -12,7 +12,7 @@
 #include "benchmark/work.hpp"
 #include "mesh/box.hpp"
 #include "support/allocations.hpp"
-#include "support/typed_lists.hpp"
+#include "support/method_test.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -176,49 +176,44 @@ TEST(WavyField, strains_elements_without_inverting_them) {
   EXPECT_LE(largest, 0.03 * element_size(scene));
 }
 
-template <class Method>
-class SteppedModelTest : public ::testing::Test {};
+class SteppedModelTest : public MethodTest {};
 
-TYPED_TEST_SUITE(SteppedModelTest, MethodTypes, EntryName);
+INSTANTIATE_TEST_SUITE_P(, SteppedModelTest, each_of(Methods{}), method_label);
 
 // Ten thousand steps are far more than a batch has; an unstable scheme overflows within them.
-TYPED_TEST(SteppedModelTest, stays_healthy_for_good) {
+TEST_P(SteppedModelTest, stays_healthy_for_good) {
   const Scene scene = box_scene(64);
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
-    const auto model =
-        make_stepped_model(scene, {.method = std::string(TypeParam::name), .precision = precision});
+    const auto model = make_stepped_model(scene, choice(precision));
     model->restart(0);
     for (int step = 0; step < 10000; ++step) model->step();
     EXPECT_NO_THROW(model->require_healthy());
   }
 }
 
-TYPED_TEST(SteppedModelTest, steps_allocate_nothing) {
+TEST_P(SteppedModelTest, steps_allocate_nothing) {
   const Scene scene = box_scene(576);
-  for (const auto& choice : variants_of({{std::string(TypeParam::name)},
-                                         {Precision::double_precision, Precision::single_precision},
-                                         {1, 2},
-                                         {}})) {
-    const auto model = make_stepped_model(scene, choice);
+  for (const auto& variant :
+       variants_of({{GetParam()}, {Precision::double_precision, Precision::single_precision}, {1, 2}, {}})) {
+    const auto model = make_stepped_model(scene, variant);
     model->step();  // threads start once
     const long before = allocations();
     for (int step = 0; step < 20; ++step) model->step();
-    EXPECT_EQ(allocations(), before) << name_of(choice.precision) << " " << choice.threads;
+    EXPECT_EQ(allocations(), before) << name_of(variant.precision) << " " << variant.threads;
   }
 }
 
-TYPED_TEST(SteppedModelTest, every_variant_has_the_forces_of_the_scalar_double_kernel) {
+TEST_P(SteppedModelTest, every_variant_has_the_forces_of_the_scalar_double_kernel) {
   const Scene scene = box_scene(64);
-  const std::string method(TypeParam::name);
   const NodalField reference =
-      make_stepped_model(scene, {.method = method, .kernel = KernelWidth::scalar})->forces();
-  const BenchPlan plan{{method}, {Precision::double_precision, Precision::single_precision}, {1, 2}, {}};
+      make_stepped_model(scene, {.method = GetParam(), .kernel = KernelWidth::scalar})->forces();
+  const BenchPlan plan{{GetParam()}, {Precision::double_precision, Precision::single_precision}, {1, 2}, {}};
   const auto variants = variants_of(plan);
   ASSERT_EQ(variants.size(), 6U);
-  for (const auto& choice : variants) {
-    EXPECT_LT(relative_difference(make_stepped_model(scene, choice)->forces(), reference),
-              force_limit(choice.precision, scene.materials.list.front().law))
-        << kernel_name(choice) << " " << name_of(choice.precision) << " " << choice.threads;
+  for (const auto& variant : variants) {
+    EXPECT_LT(relative_difference(make_stepped_model(scene, variant)->forces(), reference),
+              force_limit(variant.precision, scene.materials.list.front().law))
+        << kernel_name(variant) << " " << name_of(variant.precision) << " " << variant.threads;
   }
 }
 

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/random_scene.hpp"
 
 namespace sandglass::verification {

@@ -8,9 +8,9 @@
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
 #include "support/kept_run.hpp"
+#include "support/method_test.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -90,40 +90,37 @@ void expect_same_from_everywhere(const Scene& scene, MethodChoice choice, std::s
   }
 }
 
-template <class Method>
-class CheckpointTest : public ::testing::Test {
+class CheckpointTest : public MethodTest {
  protected:
-  static void expect_same(const AnyLaw& law, bool quasi_static, std::size_t points) {
+  void expect_same(const AnyLaw& law, bool quasi_static, std::size_t points) const {
     const Scene scene = loaded_block(law, quasi_static);
     for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
-      expect_same_from_everywhere(scene, {.method = std::string(Method::name), .precision = precision},
-                                  points);
+      expect_same_from_everywhere(scene, choice(precision), points);
     }
   }
 
   /// With the first law, and with a viscoelastic one if the method supports it.
-  static void expect_same_with_laws(bool quasi_static, std::size_t points) {
+  void expect_same_with_laws(bool quasi_static, std::size_t points) const {
     expect_same(sample_law<NeoHookean>(0.45), quasi_static, points);
-    using Remembering = Viscoelastic<NeoHookean>;
-    if constexpr (knows_law<Method, Remembering>) {
-      expect_same(sample_law<Remembering>(0.45), quasi_static, points);
+    if (method.knows_viscoelasticity) {
+      expect_same(sample_law<Viscoelastic<NeoHookean>>(0.45), quasi_static, points);
     }
   }
 };
 
-TYPED_TEST_SUITE(CheckpointTest, MethodTypes, EntryName);
+INSTANTIATE_TEST_SUITE_P(, CheckpointTest, each_of(Methods{}), method_label);
 
-TYPED_TEST(CheckpointTest, motion_resumes_with_the_same_bits) {
-  if constexpr (!is_condensed<TypeParam>) this->expect_same_with_laws(false, 5);
+TEST_P(CheckpointTest, motion_resumes_with_the_same_bits) {
+  if (!method.is_condensed) expect_same_with_laws(false, 5);
 }
 
 /// A condensed answer is one step without a point to resume from. A control that only damps fails on the
 /// first levels.
-TYPED_TEST(CheckpointTest, relaxation_resumes_with_the_same_bits) {
-  if constexpr (is_condensed<TypeParam>) {
-    this->expect_same(sample_law<NeoHookean>(0.45), true, 0);
+TEST_P(CheckpointTest, relaxation_resumes_with_the_same_bits) {
+  if (method.is_condensed) {
+    expect_same(sample_law<NeoHookean>(0.45), true, 0);
   } else {
-    this->expect_same_with_laws(true, DampsOnly<typename TypeParam::Hourglass> ? 1 : 5);
+    expect_same_with_laws(true, method.damps_only ? 1 : 5);
   }
 }
 

@@ -65,7 +65,15 @@ Agreement agreement(const Balance<Kernel, Law>& balance, const Scene& scene, con
   const double carried = norm(forces);
   const double r_exact = norm(balance.free_of(forces));
   const double r_relaxed = norm(balance.free_of(balance.forces(relaxed)));
-  const double compliance = balance.tangent(exact).inverse().norm();
+  const std::vector<double> K = balance.tangent(exact);
+  const auto solved = factored(K.data(), static_cast<int>(balance.size()));
+  std::vector<double> unit_force(balance.size()), columns;
+  for (double& f : unit_force) {
+    f = 1.0;
+    columns.push_back(norm(solved(unit_force)));
+    f = 0.0;
+  }
+  const double compliance = norm(columns);
   const double unit = largest_imposed(scene);
   return {r_relaxed / carried, r_exact / carried, largest_distance(nodal(exact), nodal(relaxed)) / unit,
           compliance * (r_exact + r_relaxed) / unit};

@@ -4,7 +4,7 @@
 
 #include "element/hourglass_assumed_strain.hpp"
 #include "element/hourglass_enhanced.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 

@@ -7,7 +7,7 @@
 #include "problem/scene_refinement.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/leapfrog.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/mesh_tangent.hpp"
 #include "support/random_scene.hpp"
 #include "support/typed_lists.hpp"

@@ -6,7 +6,7 @@
 #include "material/small_strain.hpp"
 #include "support/current_tangent.hpp"
 #include "support/derivatives.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 

@@ -13,33 +13,25 @@
 #include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
 #include "support/case_text.hpp"
+#include "support/method_test.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
 
-template <class MethodType>
-struct MaterialsTest : ::testing::Test {
-  using Method = MethodType;
-  static constexpr bool remembers = knows_law<Method, Viscoelastic<CalledLaw>>;
-
-  static MethodChoice choice(int threads = 1) {
-    return {.method = std::string(Method::name), .threads = threads};
-  }
-
+struct MaterialsTest : MethodTest {
   /// Materials in random order: inlined laws and others, one with another volumetric part, some with
   /// different fibres in every element, and two viscoelastic ones if the method supports them.
-  static Materials mixed(std::size_t elements) {
+  Materials mixed(std::size_t elements) const {
     Materials materials{{{sample_law<NeoHookean>(0.45, 30000.0), 2000.0},
                          {sample_law<Yeoh>(0.3), 1000.0},
                          {sample_law<MooneyRivlin>(0.3), 1000.0, LogarithmicPart{}},
                          {sample_law<FibreNeoHookean>(0.4), 1000.0},
                          {sample_law<NeoHookean>(0.49), 500.0}}};
-    if (remembers) {
+    if (method.knows_viscoelasticity) {
       materials.list.push_back({sample_law<Viscoelastic<Ogden>>(0.4), 1500.0});
       materials.list.push_back({sample_law<Viscoelastic<Guccione>>(0.4), 1500.0});
     }
@@ -54,9 +46,9 @@ struct MaterialsTest : ::testing::Test {
 
   /// Results of a mesh's elements at displacements u, reached in a tenth of a second.
   struct Answer {
-    Answer(const Mesh& mesh, const Materials& materials, const NodalField& u, int threads = 1)
+    Answer(const MethodChoice& variant, const Mesh& mesh, const Materials& materials, const NodalField& u)
         : bounds(mesh.cells.size()), densities(mesh.cells.size()) {
-      const auto elements = std::get<0>(make_internal_force(mesh, materials, choice(threads)));
+      const auto elements = std::get<0>(make_internal_force(mesh, materials, variant));
       State<double> state = state_at(*elements, u);
       state.step = 0.1;
       Rows<double> rows(state.u.size());
@@ -74,19 +66,19 @@ struct MaterialsTest : ::testing::Test {
     std::vector<double> bounds, densities;
   };
 };
-TYPED_TEST_SUITE(MaterialsTest, MethodTypes, EntryName);
+INSTANTIATE_TEST_SUITE_P(, MaterialsTest, each_of(Methods{}), method_label);
 
 /// A body is the sum of parts of one material each: forces and energies add up, and each element's results
 /// are those of its part. The meshes have many chunks and materials that leave lanes empty.
-TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
+TEST_P(MaterialsTest, a_body_is_the_sum_of_its_parts) {
   const Mesh mesh = box({0.1, 0.12, 0.2}, {6, 7, 12});
   RandomGeometry random(5);
   NodalField u(mesh.points.size());
   for (auto& row : u) {
     for (double& x : row) x = 0.001 * random.uniform(-1.0, 1.0);
   }
-  const Materials materials = TestFixture::mixed(mesh.cells.size());
-  const typename TestFixture::Answer whole(mesh, materials, u);
+  const Materials materials = mixed(mesh.cells.size());
+  const Answer whole(choice(), mesh, materials, u);
   NodalField force(u.size()), pressure_force(u.size());
   StrainEnergies energies;
   const double unit = largest_distance(whole.force, NodalField(u.size()));
@@ -97,7 +89,7 @@ TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
     NodalField u_part;
     for (const int node : part.node_of) u_part.push_back(u[index(node)]);
     const Materials own{{materials.list[m]}, {}, materials_of(materials, part.element_of).axes};
-    const typename TestFixture::Answer alone(part.mesh, own, u_part);
+    const Answer alone(choice(), part.mesh, own, u_part);
     for (std::size_t n = 0; n < u_part.size(); ++n) {
       for (std::size_t i = 0; i < 3; ++i) {
         force[index(part.node_of[n])][i] += alone.force[n][i];
@@ -121,8 +113,8 @@ TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
 
 /// A body and its fibres turn together: forces turn too, and elements have the same energies, bounds and
 /// levels. If fibres do not turn, forces differ.
-TYPED_TEST(MaterialsTest, fibres_turn_with_the_body) {
-  if (TestFixture::Method::Kinematics::traits.needs_coordinates || is_linear<typename TestFixture::Method>) {
+TEST_P(MaterialsTest, fibres_turn_with_the_body) {
+  if (is_updated_lagrangian(method) || method.is_linear) {
     GTEST_SKIP() << "the method is not objective";
   }
   const Mesh mesh = box({0.1, 0.12, 0.2}, {3, 4, 5});
@@ -144,8 +136,8 @@ TYPED_TEST(MaterialsTest, fibres_turn_with_the_body) {
     materials.axes.push_back(random.rotation());
     along.axes.push_back(materials.axes.back() * transpose(Q));
   }
-  const typename TestFixture::Answer here(mesh, materials, u), there(other, along, u_other),
-      left_behind(other, materials, u_other);
+  const Answer here(choice(), mesh, materials, u), there(choice(), other, along, u_other),
+      left_behind(choice(), other, materials, u_other);
   const double unit = largest_distance(here.force, NodalField(u.size()));
   NodalField expected;
   for (const Vector& f : here.force) expected.push_back(turned(f));
@@ -157,20 +149,21 @@ TYPED_TEST(MaterialsTest, fibres_turn_with_the_body) {
   }
 }
 
-TYPED_TEST(MaterialsTest, bits_do_not_depend_on_threads) {
+TEST_P(MaterialsTest, bits_do_not_depend_on_threads) {
   const Mesh mesh = box({0.1, 0.12, 0.2}, {6, 7, 12});
   NodalField u;
   for (const Vector& X : mesh.points) u.push_back({0.1 * X[2] * X[1], 0.0, 0.05 * std::sin(30.0 * X[0])});
-  const Materials materials = TestFixture::mixed(mesh.cells.size());
-  const typename TestFixture::Answer one(mesh, materials, u, 1), three(mesh, materials, u, 3);
+  const Materials materials = mixed(mesh.cells.size());
+  const Answer one(choice(), mesh, materials, u),
+      three(choice(Precision::double_precision, 3), mesh, materials, u);
   EXPECT_EQ(one.force, three.force);
   EXPECT_EQ(one.pressure_force, three.pressure_force);
 }
 
 /// Two layers pressed together between held sides: each has a uniform strain, and the stress across is equal.
 /// All elements represent that exactly; the strains follow from two numbers.
-TYPED_TEST(MaterialsTest, layers_under_pressure_carry_the_same_stress) {
-  if (is_linear<TypeParam>) GTEST_SKIP() << "another stress";
+TEST_P(MaterialsTest, layers_under_pressure_carry_the_same_stress) {
+  if (method.is_linear) GTEST_SKIP() << "another stress";
   Case description = plain_case(NeoHookean{});
   const NeoHookean stiff = sample_law<NeoHookean>(0.3, 9000.0);
   const MooneyRivlin soft = sample_law<MooneyRivlin>(0.4);
@@ -202,7 +195,7 @@ TYPED_TEST(MaterialsTest, layers_under_pressure_carry_the_same_stress) {
   EXPECT_LT(e, -0.02);
   const Scene scene = make_scene(description, mesh, sets);
   Recorder recorder;
-  const Relaxation found = relax(Model(scene, TestFixture::choice()), recorder);
+  const Relaxation found = relax(Model(scene, choice()), recorder);
   ASSERT_TRUE(found.converged);
   NodalField exact;
   for (const Vector& X : mesh.points) {
@@ -213,15 +206,15 @@ TYPED_TEST(MaterialsTest, layers_under_pressure_carry_the_same_stress) {
 }
 
 /// The step of a body is that of its part with the shortest one: element bounds are independent.
-TYPED_TEST(MaterialsTest, the_stable_step_is_the_shortest_of_the_parts) {
-  if (is_condensed<TypeParam>) GTEST_SKIP() << "takes no steps";
+TEST_P(MaterialsTest, the_stable_step_is_the_shortest_of_the_parts) {
+  if (method.is_condensed) GTEST_SKIP() << "takes no steps";
   const Mesh mesh = box({1.0, 1.0, 4.0}, {2, 2, 8});
   const auto step = [&](const Materials& materials) {
     Case description = plain_case(NeoHookean{});
     description.displacements = {{"foot", {}}};
     Scene scene = make_scene(description, mesh, {{"foot", {0}}});
     scene.materials = materials;
-    return stable_step(Model(scene, TestFixture::choice()), NodalField(mesh.points.size())).step;
+    return stable_step(Model(scene, choice()), NodalField(mesh.points.size())).step;
   };
   const Material light{sample_law<NeoHookean>(0.45, 9000.0), 400.0}, heavy{sample_law<Yeoh>(0.45), 3000.0};
   Materials both{{light, heavy}};

@@ -9,7 +9,7 @@
 
 #include "material/neo_hookean.hpp"
 #include "support/current_tangent.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 

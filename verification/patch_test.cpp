@@ -7,11 +7,10 @@
 #include "material/small_strain.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
-#include "support/exact_stress.hpp"
+#include "support/dense_matrix.hpp"
+#include "support/pair_test.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/random_hexahedra.hpp"
-#include "support/softening.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -22,22 +21,14 @@ constexpr double poisson_ratio = 0.25;
 /// Large, without symmetry: stretches of 30 % and rotation, det F = 1.1.
 constexpr Tensor<double> finite_gradient{{0.30, 0.10, -0.20, 0.05, -0.15, 0.10, 0.10, 0.25, -0.05}};
 
-template <class Pair>
-class PatchTest : public ::testing::Test {
+class PatchTest : public PairTest {
  protected:
-  using Law = typename Pair::Law;
+  const AnyLaw law = PairTest::law(poisson_ratio, young_modulus);
 
-  static Law law() { return sample_law<Law>(poisson_ratio, young_modulus); }
-  static Scene patch(const Tensor<double>& H) {
-    return patch_scene(law(), H, fitting_patch<typename Pair::Kernel>());
-  }
+  Scene patch(const Tensor<double>& H) const { return patch_scene(law, H, fitting_patch(GetParam().method)); }
 
   /// First Piola-Kirchhoff stress of the method at H.
-  static Tensor<double> stress(const Tensor<double>& H) {
-    return exact_stress<typename Pair::Method>(law(), H);
-  }
-
-  static MethodChoice method() { return {std::string(Pair::Method::name), {}}; }
+  Tensor<double> stress(const Tensor<double>& H) const { return exact_stress(method.is_linear, law, H); }
 
   /// The distance of displacements from H X, over the largest displacement.
   static double affine_error(const Scene& scene, const NodalField& u, const Tensor<double>& H) {
@@ -51,7 +42,7 @@ class PatchTest : public ::testing::Test {
   }
 
   /// First Piola stress of each element from its own mean displacement gradient.
-  static std::vector<Tensor<double>> stresses(const Scene& scene, const NodalField& u) {
+  std::vector<Tensor<double>> stresses(const Scene& scene, const NodalField& u) const {
     std::vector<Tensor<double>> result;
     for (const auto& cell : scene.mesh.cells) {
       const auto h = mean_gradient(gather(scene.mesh.points, cell)).h;
@@ -74,9 +65,9 @@ class PatchTest : public ::testing::Test {
   /// Whether the affine state is stable: the smallest eigenvalue of the inner nodes' tangent stiffness, by
   /// central differences, is positive. Relaxation cannot find an unstable state, which only pairs known for
   /// it may have.
-  static bool is_stable(const Tensor<double>& H) {
+  bool is_stable(const Tensor<double>& H) const {
     const Scene scene = patch(H);
-    const Model model(scene, method());
+    const Model model(scene, choice());
     NodalField u;
     for (const auto& X : scene.mesh.points) u.push_back(linear(H, X));
     constexpr int free = 3 * first_corner;
@@ -96,15 +87,15 @@ class PatchTest : public ::testing::Test {
       }
     }
     const bool stable = eigenvalues(0.5 * (K + transpose(K))).front() > 0.0;
-    EXPECT_TRUE(stable || (may_give_way<typename Pair::Method, Law>()));
+    EXPECT_TRUE(stable || may_give_way(method, law));
     return stable;
   }
 
   /// Relaxes and expects the exact answer.
-  static void expect_exact(const Tensor<double>& H) {
+  void expect_exact(const Tensor<double>& H) const {
     Scene scene = patch(H);
     scene.settings.relaxation.tolerance = 1e-12;
-    const Model model(scene, method());
+    const Model model(scene, choice());
     Recorder recorder;
     const Relaxation answer = relax(model, recorder);
     ASSERT_TRUE(answer.converged);
@@ -116,8 +107,7 @@ class PatchTest : public ::testing::Test {
     for (const auto& found : stresses(scene, answer.u)) EXPECT_LT(largest_entry(found - P), tolerance);
     // Results have the Cauchy stress; at small strains it equals the first Piola-Kirchhoff stress.
     const Tensor<double> F = identity<double>() + H;
-    const Tensor<double> sigma =
-        is_linear<typename Pair::Method> ? P : (1.0 / determinant(F)) * (P * transpose(F));
+    const Tensor<double> sigma = method.is_linear ? P : (1.0 / determinant(F)) * (P * transpose(F));
     const std::vector<double> cauchy = recorder.frames.back().stresses;
     for (std::size_t n = 0; n < cauchy.size(); ++n) EXPECT_NEAR(cauchy[n], sigma.entries[n % 9], tolerance);
     const Vector pull = traction(model, answer.u);
@@ -125,42 +115,41 @@ class PatchTest : public ::testing::Test {
   }
 };
 
-TYPED_TEST_SUITE(PatchTest, PathIndependentPairTypes, EntryName);
+INSTANTIATE_TEST_SUITE_P(, PatchTest, each_of_pairs(PairsOf<PathIndependentMethods>{}), pair_label);
 
-TYPED_TEST(PatchTest, small_strain_is_exact) {
-  this->expect_exact(macneal_harder_gradient());
+TEST_P(PatchTest, small_strain_is_exact) {
+  expect_exact(macneal_harder_gradient());
 }
 
-TYPED_TEST(PatchTest, finite_strain_is_exact) {
-  if (!this->is_stable(finite_gradient)) GTEST_SKIP() << "an equilibrium, but not a stable one";
-  this->expect_exact(finite_gradient);
+TEST_P(PatchTest, finite_strain_is_exact) {
+  if (!is_stable(finite_gradient)) GTEST_SKIP() << "an equilibrium, but not a stable one";
+  expect_exact(finite_gradient);
 }
 
 /// The published stresses 2000 and 400 of linear elasticity, at a strain small enough for laws to be linear
 /// to 1e-6. Centre gradients would give 1766 to 2150, weights 8 det J(0) 1967 to 2040.
-TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
+TEST_P(PatchTest, published_stresses_at_vanishing_strain) {
   const double factor = 1e-4;  // strain 1e-7
-  Scene scene = this->patch(macneal_harder_gradient(factor));
+  Scene scene = patch(macneal_harder_gradient(factor));
   scene.settings.relaxation.tolerance = 1e-10;
-  const Model model(scene, this->method());
+  const Model model(scene, choice());
   Observer silent;
   const Relaxation answer = relax(model, silent);
   ASSERT_TRUE(answer.converged);
-  const auto law = this->law();
   const Tensor<double> H = macneal_harder_gradient();
-  const Tensor<double> exact = small_strain_stress(law, 0.5 * (H + transpose(H)));
+  const Tensor<double> exact = exact_stress(true, law, H);
   const double normal = largest_entry(exact);
-  if (std::is_same_v<typename TypeParam::Law, NeoHookean>) {  // with the parameters E and nu
+  if (std::holds_alternative<NeoHookean>(law)) {  // with the parameters E and nu
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) EXPECT_NEAR(exact(i, j), i == j ? 2000.0 : 400.0, 1e-9);
     }
   }
-  for (const auto& stress : this->stresses(scene, answer.u)) {
+  for (const auto& stress : stresses(scene, answer.u)) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) EXPECT_NEAR(stress(i, j) / factor, exact(i, j), 5e-6 * normal);
     }
   }
-  const Vector pull = this->traction(model, answer.u);
+  const Vector pull = traction(model, answer.u);
   EXPECT_NEAR(pull[0] / factor, exact(0, 0), 5e-6 * normal);
   EXPECT_NEAR(pull[1] / factor, exact(1, 0), 5e-6 * normal);
 }
@@ -169,33 +158,33 @@ TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
 /// mode (1.1 to 1.6 rad/s with the neo-Hookean law, somewhat less with others; the rest hundreds). Nearly
 /// critical damping of it, 2 omega, leaves exp(-25) = 1e-11 after twenty-five seconds more than the ramp;
 /// another ten are for softer modes, which that damping slows.
-TYPED_TEST(PatchTest, ramped_explicit_dynamics_is_exact) {
+TEST_P(PatchTest, ramped_explicit_dynamics_is_exact) {
   for (const auto& H : {macneal_harder_gradient(), finite_gradient}) {
-    if (!this->is_stable(H)) continue;
-    Scene scene = this->patch(H);
+    if (!is_stable(H)) continue;
+    Scene scene = patch(H);
     scene.settings.quasi_static = false;
     scene.settings.dynamics.duration = 40.0;
     scene.settings.dynamics.ramp_time = 5.0;
     scene.settings.dynamics.damping = 2.2;
-    const Model model(scene, this->method());
+    const Model model(scene, choice());
     Observer silent;
-    if (is_condensed<typename TypeParam::Method>) {
+    if (method.is_condensed) {
       EXPECT_THROW(integrate(model, silent), InputError);
       continue;
     }
     const Motion motion = integrate(model, silent);
-    EXPECT_LT(this->affine_error(scene, motion.u, H), 1e-8);
-    const auto P = this->stress(H);
-    for (const auto& stress : this->stresses(scene, motion.u)) {
+    EXPECT_LT(affine_error(scene, motion.u, H), 1e-8);
+    const auto P = stress(H);
+    for (const auto& stress : stresses(scene, motion.u)) {
       EXPECT_LT(largest_entry(stress - P), 1e-8 * largest_entry(P));
     }
   }
 }
 
 /// The affine state is also an equilibrium: inner nodes have no force, to roundoff.
-TYPED_TEST(PatchTest, affine_displacements_are_an_equilibrium) {
-  const Scene scene = this->patch(finite_gradient);
-  const Model model(scene, this->method());
+TEST_P(PatchTest, affine_displacements_are_an_equilibrium) {
+  const Scene scene = patch(finite_gradient);
+  const Model model(scene, choice());
   NodalField u;
   for (const auto& X : scene.mesh.points) u.push_back(linear(finite_gradient, X));
   NodalField force = internal_forces(model, u);

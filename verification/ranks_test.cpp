@@ -11,9 +11,9 @@
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
 #include "support/kept_run.hpp"
+#include "support/method_test.hpp"
 #include "support/plates.hpp"
 #include "support/thread_ranks.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -46,29 +46,25 @@ void expect_same_bits(const Scene& scene, const std::string& method, int count, 
   for (const auto& bits : together) EXPECT_EQ(bits, alone) << count << " ranks";
 }
 
-template <class Method>
-class RanksTest : public ::testing::Test {
- protected:
-  static inline const std::string name{Method::name};
-};
+class RanksTest : public MethodTest {};
 
-TYPED_TEST_SUITE(RanksTest, MethodTypes, EntryName);
+INSTANTIATE_TEST_SUITE_P(, RanksTest, each_of(Methods{}), method_label);
 
-TYPED_TEST(RanksTest, relaxation) {
+TEST_P(RanksTest, relaxation) {
   Scene scene = block(sample_law<NeoHookean>(0.45), true, {4, 4, 18});
-  if (is_condensed<TypeParam>) scene.forces.clear();
-  expect_same_bits(scene, this->name, 2);
+  if (method.is_condensed) scene.forces.clear();
+  expect_same_bits(scene, GetParam(), 2);
 }
 
-TYPED_TEST(RanksTest, motion) {
-  if constexpr (!is_condensed<TypeParam>) {
-    expect_same_bits(block(sample_law<NeoHookean>(0.45), false, {4, 4, 18}), this->name, 2);
+TEST_P(RanksTest, motion) {
+  if (!method.is_condensed) {
+    expect_same_bits(block(sample_law<NeoHookean>(0.45), false, {4, 4, 18}), GetParam(), 2);
   }
 }
 
-TYPED_TEST(RanksTest, motion_with_a_law_that_remembers) {
-  if constexpr (!is_condensed<TypeParam> && knows_law<TypeParam, Viscoelastic<NeoHookean>>) {
-    expect_same_bits(block(sample_law<Viscoelastic<NeoHookean>>(0.45), false, {4, 4, 18}), this->name, 2);
+TEST_P(RanksTest, motion_with_a_law_that_remembers) {
+  if (!method.is_condensed && method.knows_viscoelasticity) {
+    expect_same_bits(block(sample_law<Viscoelastic<NeoHookean>>(0.45), false, {4, 4, 18}), GetParam(), 2);
   }
 }
 

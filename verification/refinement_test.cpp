@@ -13,7 +13,7 @@
 #include "solve/relaxation.hpp"
 #include "support/exact_fields.hpp"
 #include "support/manufactured.hpp"
-#include "support/typed_lists.hpp"
+#include "support/method_test.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -179,17 +179,13 @@ double largest(const NodalField& field) {
 
 const NeoHookean soft{.young_modulus = 3000.0, .poisson_ratio = 0.45};
 
-template <class Method>
-class RefinedBodyTest : public ::testing::Test {
- protected:
-  static MethodChoice method() { return {std::string(Method::name), {}}; }
-};
-TYPED_TEST_SUITE(RefinedBodyTest, MovingMethodTypes, EntryName);
+class RefinedBodyTest : public MethodTest {};
+INSTANTIATE_TEST_SUITE_P(, RefinedBodyTest, each_of(MovingMethods{}), method_label);
 
 /// Under a linear field stresses are constant, and forces on inner nodes vanish once tied nodes pass theirs
 /// on: the patch test with hanging nodes in all positions. Forces are sums of stresses times areas; their
 /// rounding is that of stresses of the size of K.
-TYPED_TEST(RefinedBodyTest, passes_the_patch_test) {
+TEST_P(RefinedBodyTest, passes_the_patch_test) {
   const Tensor<double> H{{.02, .05, -.03, .04, -.03, .02, -.05, .01, .02}};
   for_each_choice([&](const RefinedMesh& refined) {
     Case description = plain_case(soft);
@@ -200,20 +196,19 @@ TYPED_TEST(RefinedBodyTest, passes_the_patch_test) {
     const Scene scene = scene_on(refined, description, sets);
     NodalField u;
     for (const Vector& X : refined.mesh().points) u.push_back(linear(H, X));
-    const NodalField forces = free_forces(Model(scene, this->method()), u);
+    const NodalField forces = free_forces(Model(scene, choice()), u);
     EXPECT_LT(largest(forces), 1e3 * eps * soft.bulk_modulus());
   });
 }
 
 /// Translations and, unless the method is linear, rotations cause no forces.
-TYPED_TEST(RefinedBodyTest, knows_rigid_motions) {
+TEST_P(RefinedBodyTest, knows_rigid_motions) {
   const RefinedMesh refined = randomly_refined(distorted_cube(2, 0.15, 3), 2, 4);
   const Scene scene = scene_on(refined, plain_case(soft), {});
-  const Model model(scene, this->method());
+  const Model model(scene, choice());
   RandomGeometry random(5);
   Tensor<double> H{};
-  if (!is_linear<TypeParam> && detail::path_independent<TypeParam>)
-    H = random.rotation() - identity<double>();
+  if (!method.is_linear && is_path_independent(method)) H = random.rotation() - identity<double>();
   NodalField u;
   for (const Vector& X : refined.mesh().points) {
     u.push_back(linear(H, X));
@@ -224,130 +219,119 @@ TYPED_TEST(RefinedBodyTest, knows_rigid_motions) {
 
 /// The free forces are the derivative of the energy by the displacements of the free nodes, which tied nodes
 /// follow.
-TYPED_TEST(RefinedBodyTest, forces_are_the_derivative_of_the_energy) {
-  if constexpr (!detail::path_independent<TypeParam>) {
-    GTEST_SKIP() << "its forces depend on the path";
-  } else {
-    const RefinedMesh refined = randomly_refined(distorted_cube(2, 0.15, 3), 2, 4);
-    const Scene scene = scene_on(refined, plain_case(soft), {});
-    const Model model(scene, this->method());
-    RandomGeometry random(6);
-    const std::size_t nodes = refined.mesh().points.size();
-    const auto followed = [&](double size) {
-      NodalField field(nodes);
-      for (Vector& v : field)
-        v = {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-      follow(scene.ties, field);
-      return field;
-    };
-    const NodalField u = followed(0.02), d = followed(1.0), f = free_forces(model, u);
-    const auto energy = [&](double step) {
-      NodalField moved = u;
-      for (std::size_t n = 0; n < nodes; ++n)
-        for (std::size_t i = 0; i < 3; ++i) moved[n][i] += step * d[n][i];
-      const StrainEnergies energies = strain_energies(model, moved);
-      return energies.strain + energies.hourglass;
-    };
-    double slope = 0.0, size = 0.0;
-    for (std::size_t n = 0; n < nodes; ++n) {
-      if (is_tied(scene.ties, static_cast<int>(n))) {
-        EXPECT_EQ(length(f[n]), 0.0);
-        continue;
-      }
-      for (std::size_t i = 0; i < 3; ++i) {
-        slope += f[n][i] * d[n][i];
-        size += std::abs(f[n][i] * d[n][i]);
-      }
+TEST_P(RefinedBodyTest, forces_are_the_derivative_of_the_energy) {
+  if (!is_path_independent(method)) GTEST_SKIP() << "its forces depend on the path";
+  const RefinedMesh refined = randomly_refined(distorted_cube(2, 0.15, 3), 2, 4);
+  const Scene scene = scene_on(refined, plain_case(soft), {});
+  const Model model(scene, choice());
+  RandomGeometry random(6);
+  const std::size_t nodes = refined.mesh().points.size();
+  const auto followed = [&](double size) {
+    NodalField field(nodes);
+    for (Vector& v : field)
+      v = {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
+    follow(scene.ties, field);
+    return field;
+  };
+  const NodalField u = followed(0.02), d = followed(1.0), f = free_forces(model, u);
+  const auto energy = [&](double step) {
+    NodalField moved = u;
+    for (std::size_t n = 0; n < nodes; ++n)
+      for (std::size_t i = 0; i < 3; ++i) moved[n][i] += step * d[n][i];
+    const StrainEnergies energies = strain_energies(model, moved);
+    return energies.strain + energies.hourglass;
+  };
+  double slope = 0.0, size = 0.0;
+  for (std::size_t n = 0; n < nodes; ++n) {
+    if (is_tied(scene.ties, static_cast<int>(n))) {
+      EXPECT_EQ(length(f[n]), 0.0);
+      continue;
     }
-    // The error of the difference, (step / element size)^2 / 6 of a third derivative that is as large as the
-    // forces.
-    const double step = 1e-5;
-    EXPECT_NEAR((energy(step) - energy(-step)) / (2 * step), slope, 1e-6 * size);
+    for (std::size_t i = 0; i < 3; ++i) {
+      slope += f[n][i] * d[n][i];
+      size += std::abs(f[n][i] * d[n][i]);
+    }
   }
+  // The error of the difference, (step / element size)^2 / 6 of a third derivative that is as large as the
+  // forces.
+  const double step = 1e-5;
+  EXPECT_NEAR((energy(step) - energy(-step)) / (2 * step), slope, 1e-6 * size);
 }
 
 /// A free body that flies, spins and vibrates: momentum up to rounding, angular momentum and energy up to an
 /// oscillation of (omega dt)^2, without drift. Tied nodes have no mass of their own; the nodes that they
 /// follow carry all of it.
-TYPED_TEST(RefinedBodyTest, keeps_momentum_and_energy_in_motion) {
-  if constexpr (!detail::path_independent<TypeParam>) {
-    GTEST_SKIP() << "it dissipates, or its energy depends on the path";
-  } else {
-    const RefinedMesh refined = randomly_refined(distorted_cube(2, 0.15, 3), 2, 4);
-    Case description = plain_case(soft);
-    description.quasi_static = false;
-    description.velocities = {{.value = {0.3, 0.1, 0.0}},
-                              {.value = {0.0, 0.2, 0.1}, .half_waves = {1, 0, 1}},
-                              {.spin = {0.0, 0.0, is_linear<TypeParam> ? 0.0 : 0.5}}};
-    description.dynamics.duration = 0.5;
-    description.dynamics.step_fraction = 0.4;
-    description.dynamics.check_interval = 10;
-    description.dynamics.frames = 10;
-    const Scene scene = scene_on(refined, description, {});
-    const Model model(scene, this->method());
-    double mass = 0.0;
-    for (const double m : model.masses()) mass += m;
-    EXPECT_NEAR(mass, 1000.0, 1e-9);
-    Recorder recorder;
-    integrate(model, recorder);
-    const auto momenta = [&](const Frame& frame) {
-      std::array<Vector, 2> sum{};
-      for (std::size_t n = 0; n < frame.u.size(); ++n) {
-        const double m = model.masses()[n];
-        Vector x = refined.mesh().points[n];
-        for (std::size_t i = 0; i < 3; ++i) x[i] += frame.u[n][i];
-        for (std::size_t i = 0; i < 3; ++i) {
-          const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-          sum[0][i] += m * frame.v[n][i];
-          sum[1][i] += m * (x[j] * frame.v[n][k] - x[k] * frame.v[n][j]);
-        }
-      }
-      return sum;
-    };
-    const auto [p, L] = momenta(recorder.frames.front());
-    ASSERT_GT(recorder.frames.size(), 5U);
-    for (const Frame& frame : recorder.frames) {
-      const auto [now, turning] = momenta(frame);
-      EXPECT_LT(distance(now, p), 1e-11 * length(p));
-      if (!is_linear<TypeParam>) {
-        EXPECT_LT(distance(turning, L), 2e-3 * length(L));
+TEST_P(RefinedBodyTest, keeps_momentum_and_energy_in_motion) {
+  if (!is_path_independent(method)) GTEST_SKIP() << "it dissipates, or its energy depends on the path";
+  const RefinedMesh refined = randomly_refined(distorted_cube(2, 0.15, 3), 2, 4);
+  Case description = plain_case(soft);
+  description.quasi_static = false;
+  description.velocities = {{.value = {0.3, 0.1, 0.0}},
+                            {.value = {0.0, 0.2, 0.1}, .half_waves = {1, 0, 1}},
+                            {.spin = {0.0, 0.0, method.is_linear ? 0.0 : 0.5}}};
+  description.dynamics.duration = 0.5;
+  description.dynamics.step_fraction = 0.4;
+  description.dynamics.check_interval = 10;
+  description.dynamics.frames = 10;
+  const Scene scene = scene_on(refined, description, {});
+  const Model model(scene, choice());
+  double mass = 0.0;
+  for (const double m : model.masses()) mass += m;
+  EXPECT_NEAR(mass, 1000.0, 1e-9);
+  Recorder recorder;
+  integrate(model, recorder);
+  const auto momenta = [&](const Frame& frame) {
+    std::array<Vector, 2> sum{};
+    for (std::size_t n = 0; n < frame.u.size(); ++n) {
+      const double m = model.masses()[n];
+      Vector x = refined.mesh().points[n];
+      for (std::size_t i = 0; i < 3; ++i) x[i] += frame.u[n][i];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        sum[0][i] += m * frame.v[n][i];
+        sum[1][i] += m * (x[j] * frame.v[n][k] - x[k] * frame.v[n][j]);
       }
     }
-    const double start = total_energy(recorder.rows.front());
-    for (const HistoryRow& row : recorder.rows) EXPECT_NEAR(total_energy(row), start, 0.02 * start);
+    return sum;
+  };
+  const auto [p, L] = momenta(recorder.frames.front());
+  ASSERT_GT(recorder.frames.size(), 5U);
+  for (const Frame& frame : recorder.frames) {
+    const auto [now, turning] = momenta(frame);
+    EXPECT_LT(distance(now, p), 1e-11 * length(p));
+    if (!method.is_linear) {
+      EXPECT_LT(distance(turning, L), 2e-3 * length(L));
+    }
   }
+  const double start = total_energy(recorder.rows.front());
+  for (const HistoryRow& row : recorder.rows) EXPECT_NEAR(total_energy(row), start, 0.02 * start);
 }
 
 /// On randomly refined meshes, errors of displacements fall with the square of the edge: manufactured waves,
 /// five faces imposed, tractions on the sixth.
-TYPED_TEST(RefinedBodyTest, converges_with_second_order) {
-  if constexpr (zero_energy_modes<TypeParam>() != 6 || is_adaptive<TypeParam>) {
-    GTEST_SKIP() << "no answer of its own";
-  } else {
-    const WaveField field{};
-    const ManufacturedSolution<TypeParam, NeoHookean, WaveField> solution{field, soft};
-    const auto error = [&](int n) {
-      const RefinedMesh refined = randomly_refined(distorted_cube(n, 0.1, 8), 1, 9, 0.2);
-      const Mesh& mesh = refined.mesh();
-      const auto held = nodes_where(mesh.points, [&](const Vector& X) {
-        const bool inside_the_loaded_face =
-            X[0] == 1.0 && X[1] > 0.0 && X[1] < 1.0 && X[2] > 0.0 && X[2] < 1.0;
-        return !inside_the_loaded_face &&
-               std::ranges::any_of(X, [](double x) { return x == 0.0 || x == 1.0; });
-      });
-      Case description = plain_case(soft);
-      NodeSets sets;
-      impose_field(
-          held, mesh.points, [&](const Vector& X) { return solution.displacement(X); }, description, sets);
-      Scene scene = scene_on(refined, description, sets);
-      scene.forces = {std::make_shared<DeadLoads>(manufactured_loads(mesh, solution))};
-      Observer silent;
-      const Relaxation answer = relax(Model(scene, this->method()), silent);
-      EXPECT_TRUE(answer.converged) << outcome(answer, Precision::double_precision);
-      return field_errors(mesh, answer.u, field).displacement;
-    };
-    EXPECT_NEAR(std::log2(error(4) / error(8)), 2.0, 0.25);
-  }
+TEST_P(RefinedBodyTest, converges_with_second_order) {
+  if (leaves_hourglass_modes(choice()) || method.adapts()) GTEST_SKIP() << "no answer of its own";
+  const WaveField field{};
+  const ManufacturedSolution<WaveField> solution{field, soft, method.is_linear};
+  const auto error = [&](int n) {
+    const RefinedMesh refined = randomly_refined(distorted_cube(n, 0.1, 8), 1, 9, 0.2);
+    const Mesh& mesh = refined.mesh();
+    const auto held = nodes_where(mesh.points, [&](const Vector& X) {
+      const bool inside_the_loaded_face = X[0] == 1.0 && X[1] > 0.0 && X[1] < 1.0 && X[2] > 0.0 && X[2] < 1.0;
+      return !inside_the_loaded_face && std::ranges::any_of(X, [](double x) { return x == 0.0 || x == 1.0; });
+    });
+    Case description = plain_case(soft);
+    NodeSets sets;
+    impose_field(
+        held, mesh.points, [&](const Vector& X) { return solution.displacement(X); }, description, sets);
+    Scene scene = scene_on(refined, description, sets);
+    scene.forces = {std::make_shared<DeadLoads>(manufactured_loads(mesh, solution))};
+    Observer silent;
+    const Relaxation answer = relax(Model(scene, choice()), silent);
+    EXPECT_TRUE(answer.converged) << outcome(answer, Precision::double_precision);
+    return field_errors(mesh, answer.u, field).displacement;
+  };
+  EXPECT_NEAR(std::log2(error(4) / error(8)), 2.0, 0.25);
 }
 
 }  // namespace

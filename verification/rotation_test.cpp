@@ -11,10 +11,10 @@
 #include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
 #include "support/case_text.hpp"
+#include "support/method_test.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -107,29 +107,21 @@ TEST(Rotation, largest_imposed_is_that_of_the_way) {
   }
 }
 
-/// Whether a method treats rotations as rigid.
-template <class Method>
-constexpr bool is_objective = !is_linear<Method>;
-
-template <class Method>
-class RotationTest : public ::testing::Test {
- protected:
-  static MethodChoice method() { return {std::string(Method::name), {}}; }
-};
-TYPED_TEST_SUITE(RotationTest, SteppedMethodTypes, EntryName);
+class RotationTest : public MethodTest {};
+INSTANTIATE_TEST_SUITE_P(, RotationTest, each_of(SteppedMethods{}), method_label);
 
 /// A body that turns as a whole, more than a full turn, stores no energy and needs no work. In small-strain
 /// theory it has a strain of (1 - cos) in the plane of rotation.
-TYPED_TEST(RotationTest, rigid_rotation_needs_neither_force_nor_work) {
+TEST_P(RotationTest, rigid_rotation_needs_neither_force_nor_work) {
   const Scene scene = turned_block({.set = "all", .axis = oblique, .angle = 7.0}, false);
-  const Model model(scene, this->method());
+  const Model model(scene, choice());
   Recorder recorder;
   const Relaxation answer = relax(model, recorder);
   const auto& law = std::get<NeoHookean>(scene.materials.list.front().law);
   const double stiffness = law.bulk_modulus() * 0.1 * 0.1 * 0.2;  // J at a strain of one
   const double energy = answer.energies.strain + answer.energies.hourglass;
   const double work = recorder.rows.back().external_work;
-  if (is_objective<TypeParam>) {
+  if (!method.is_linear) {
     // Strains are rounded to 1e-15, energies to the square of that, up to the rounding of 1 + strain.
     EXPECT_LT(std::abs(energy), 1e-14 * stiffness);
     EXPECT_LT(std::abs(work), 1e-12 * stiffness);
@@ -143,7 +135,7 @@ TYPED_TEST(RotationTest, rigid_rotation_needs_neither_force_nor_work) {
 /// The work of a turning head equals the static body's energy. Without free nodes every level is an
 /// equilibrium: work from the mean of the forces at both ends of a level then has an error of second order in
 /// the level, and none where forces are linear. A straight path would give a fraction of the work.
-TYPED_TEST(RotationTest, static_work_is_the_stored_energy) {
+TEST_P(RotationTest, static_work_is_the_stored_energy) {
   const auto imbalance = [&](int levels) {
     Case description = plain_case(sample_law<NeoHookean>(0.45));
     const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 1});
@@ -155,11 +147,11 @@ TYPED_TEST(RotationTest, static_work_is_the_stored_energy) {
     description.relaxation.levels = levels;
     const Scene scene = make_scene(description, mesh, sets);
     Recorder recorder;
-    const Relaxation answer = relax(Model(scene, this->method()), recorder);
+    const Relaxation answer = relax(Model(scene, choice()), recorder);
     return recorder.rows.back().external_work / (answer.energies.strain + answer.energies.hourglass) - 1.0;
   };
   const double coarse = imbalance(20), fine = imbalance(40);
-  if (is_linear<TypeParam>) {
+  if (method.is_linear) {
     EXPECT_NEAR(coarse, 0.0, 1e-12);
   } else {
     EXPECT_LT(std::abs(coarse), 0.02);
@@ -168,16 +160,16 @@ TYPED_TEST(RotationTest, static_work_is_the_stored_energy) {
 }
 
 /// In motion too, including the inertia of the driven nodes: to second order in the step.
-TYPED_TEST(RotationTest, work_in_motion_balances_energies) {
+TEST_P(RotationTest, work_in_motion_balances_energies) {
   const auto imbalance = [&](double fraction) {
     Scene scene =
         turned_block({.set = "head", .axis = {0, 0, 1}, .angle = 0.8, .displacement = {0, 0, 0.01}});
     scene.settings.quasi_static = false;
     const double dt =
-        fraction * stable_step(Model(scene, this->method()), NodalField(scene.mesh.points.size())).step;
+        fraction * stable_step(Model(scene, choice()), NodalField(scene.mesh.points.size())).step;
     scene.settings.dynamics = {
         .duration = 0.15, .ramp_time = 0.1, .time_step = dt, .check_interval = 1, .frames = 1};
-    const Model model(scene, this->method());
+    const Model model(scene, choice());
     Recorder recorder;
     integrate(model, recorder);
     return energy_imbalance(recorder.rows);

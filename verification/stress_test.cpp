@@ -10,10 +10,10 @@
 #include "solve/central_difference.hpp"
 #include "solve/frame.hpp"
 #include "solve/relaxation.hpp"
+#include "support/method_test.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/plates.hpp"
 #include "support/random_hexahedra.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -46,16 +46,12 @@ Tensor<double> virial(const NodalField& force, const NodalField& X, const NodalF
   return sum;
 }
 
-template <class Method>
-class StressTest : public ::testing::Test {
+class StressTest : public MethodTest {
  protected:
-  static inline const std::string name{Method::name};
-  static constexpr bool small_strain = is_linear<Method>;
-
   /// A patch deformed by H, whose inner nodes also move at random, by a share `waviness` of their distances.
   static std::pair<Scene, NodalField> strained(const AnyLaw& law, double waviness) {
     const Tensor<double> H{{0.1, 0.05, -0.02, 0.04, -0.06, 0.03, 0.01, -0.07, 0.12}};
-    const Mesh mesh = fitting_patch<FormulationOf<Method, NeoHookean>>();
+    const Mesh mesh = fitting_patch(GetParam());
     NodalField u;
     RandomGeometry random(5);
     for (const Vector& X : mesh.points) {
@@ -66,17 +62,17 @@ class StressTest : public ::testing::Test {
   }
 };
 
-TYPED_TEST_SUITE(StressTest, MethodTypes, EntryName);
+INSTANTIATE_TEST_SUITE_P(, StressTest, each_of(Methods{}), method_label);
 
 /// Stresses of elements, times their volumes, sum to the virial of their forces for any motion, which would
 /// fail with the stress of one point instead of the mean, or with other volumes. Hourglass forces are no
 /// stress of the material: kappa is zero here, and controls that have energy nevertheless are left to the
 /// test of uniform motion.
-TYPED_TEST(StressTest, of_the_elements_sum_up_to_the_virial_of_the_nodal_forces) {
-  const auto [scene, u] = this->strained(sample_law<NeoHookean>(0.45), 0.02);
-  MethodChoice choice{.method = this->name};
-  if (method_named(this->name).takes_kappa) choice.kappa = 0.0;
-  const Model model(scene, choice);
+TEST_P(StressTest, of_the_elements_sum_up_to_the_virial_of_the_nodal_forces) {
+  const auto [scene, u] = strained(sample_law<NeoHookean>(0.45), 0.02);
+  MethodChoice plain = choice();
+  if (method.takes_kappa) plain.kappa = 0.0;
+  const Model model(scene, plain);
   const Frame frame = static_frame(model, 1.0, u);
   if (strain_energies(model, u).hourglass > 0.0) return;
   Tensor<double> sum{};
@@ -84,45 +80,45 @@ TYPED_TEST(StressTest, of_the_elements_sum_up_to_the_virial_of_the_nodal_forces)
     // The volume used by the element: of its nodes if updated, else J times the undeformed one.
     NodalVectors<double> x = gather(scene.mesh.points, scene.mesh.cells[e]);
     double volume = mean_gradient(x).volume;
-    if (this->name.starts_with("ul-")) {
+    if (is_updated_lagrangian(method)) {
       x += gather(u, scene.mesh.cells[e]);
       volume = mean_gradient(x).volume;
-    } else if (!this->small_strain) {
+    } else if (!method.is_linear) {
       volume *= frame.jacobians[e];
     }
     sum += volume * stress_of(frame, e);
   }
-  const auto expected = virial(internal_forces(model, u), scene.mesh.points, u, this->small_strain);
+  const auto expected = virial(internal_forces(model, u), scene.mesh.points, u, method.is_linear);
   EXPECT_LT(largest_entry(sum - expected), 1e-12 * largest_entry(expected));
 }
 
 /// The material's stress does not depend on the strength of the hourglass control.
-TYPED_TEST(StressTest, excludes_the_hourglass_control) {
-  if (!method_named(this->name).takes_kappa) return;
-  const auto [scene, u] = this->strained(sample_law<NeoHookean>(0.45), 0.02);
+TEST_P(StressTest, excludes_the_hourglass_control) {
+  if (!method.takes_kappa) return;
+  const auto [scene, u] = strained(sample_law<NeoHookean>(0.45), 0.02);
   const auto stresses = [&](double kappa) {
-    return static_frame(Model(scene, {.method = this->name, .kappa = kappa}), 1.0, u).stresses;
+    return static_frame(Model(scene, {.method = GetParam(), .kappa = kappa}), 1.0, u).stresses;
   };
   EXPECT_EQ(stresses(0.0), stresses(1.0));
 }
 
 /// In a uniform motion the stress is the law's, in float and double, with any control, and symmetric: sigma =
 /// mu J^(-5/3) dev(F F^T) + K (J - 1) for the neo-Hookean law, 2 mu dev(e) + K tr(e) for small strains.
-TYPED_TEST(StressTest, of_a_uniform_motion_is_the_closed_form) {
+TEST_P(StressTest, of_a_uniform_motion_is_the_closed_form) {
   const auto law = sample_law<NeoHookean>(0.45);
-  const auto [scene, u] = this->strained(law, 0.0);
+  const auto [scene, u] = strained(law, 0.0);
   const Tensor<double> H{{0.1, 0.05, -0.02, 0.04, -0.06, 0.03, 0.01, -0.07, 0.12}};
   const Tensor<double> F = identity<double>() + H;
   const double J = determinant(F), mu = law.shear_modulus(), K = law.bulk_modulus();
   const Tensor<double> e = 0.5 * (H + transpose(H));
   const Tensor<double> expected =
-      this->small_strain
+      method.is_linear
           ? 2.0 * mu * deviator(e) + K * trace(e) * identity<double>()
           : mu * std::pow(J, -5.0 / 3.0) * deviator(F * transpose(F)) + K * (J - 1.0) * identity<double>();
   // Roundoff of the strain times the ratio of bulk modulus and stress, about ten.
   for (const auto& [precision, tolerance] :
        {std::pair{Precision::double_precision, 1e-13}, {Precision::single_precision, 3e-5}}) {
-    const Model model(scene, {.method = this->name, .precision = precision});
+    const Model model(scene, choice(precision));
     const Frame frame = static_frame(model, 1.0, u);
     ASSERT_EQ(frame.stresses.size(), 9 * scene.mesh.cells.size());
     for (std::size_t n = 0; n < scene.mesh.cells.size(); ++n) {
@@ -133,10 +129,10 @@ TYPED_TEST(StressTest, of_a_uniform_motion_is_the_closed_form) {
 
 /// Evaluating stresses does not change the memory of a law: after a step, the stress balances the step's
 /// forces, and a second evaluation gives the same bits.
-TYPED_TEST(StressTest, of_a_law_that_remembers_is_that_of_the_last_step) {
-  if constexpr (knows_law<TypeParam, Viscoelastic<NeoHookean>>) {
-    const auto [scene, u] = this->strained(sample_law<Viscoelastic<NeoHookean>>(0.45), 0.0);
-    const Model model(scene, {.method = this->name});
+TEST_P(StressTest, of_a_law_that_remembers_is_that_of_the_last_step) {
+  if (method.knows_viscoelasticity) {
+    const auto [scene, u] = strained(sample_law<Viscoelastic<NeoHookean>>(0.45), 0.0);
+    const Model model(scene, choice());
     const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
     State<double> state = state_at(elements, u);
     state.step = 0.3;  // s, in which a part of the stress relaxes

@@ -15,11 +15,11 @@
 #include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
 #include "support/case_text.hpp"
+#include "support/method_test.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
@@ -156,22 +156,15 @@ TEST(Loads, change_by_the_difference_of_their_forces) {
   }
 }
 
-template <class MethodType>
-struct PressedTest : ::testing::Test {
-  /// Whether elements resist all modes in static equilibrium: otherwise a search for it rarely succeeds.
-  static bool controls() {
-    const MethodEntry& method = method_named(std::string(MethodType::name));
-    return method.controls_hourglass && !method.damps_only;
-  }
-};
-TYPED_TEST_SUITE(PressedTest, MethodTypes, EntryName);
+struct PressedTest : MethodTest {};
+INSTANTIATE_TEST_SUITE_P(, PressedTest, each_of(Methods{}), method_label);
 
 /// A body of any shape under the same pressure from all sides shrinks uniformly, K (J - 1) = -p.
-TYPED_TEST(PressedTest, a_body_under_pressure_shrinks_uniformly) {
-  if (is_linear<TypeParam> || std::is_same_v<typename TypeParam::Kinematics, UpdatedOnePoint>) {
+TEST_P(PressedTest, a_body_under_pressure_shrinks_uniformly) {
+  if (method.is_linear || is_updated_lagrangian(method)) {
     GTEST_SKIP() << "of small strains, or of the path";
   }
-  if (!TestFixture::controls()) GTEST_SKIP() << "has no equilibrium";
+  if (leaves_hourglass_modes(choice())) GTEST_SKIP() << "has no equilibrium";
   const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.3};
   Case description = plain_case(law);
   const Mesh mesh = box({0.1, 0.12, 0.15}, {3, 3, 4});
@@ -190,8 +183,7 @@ TYPED_TEST(PressedTest, a_body_under_pressure_shrinks_uniformly) {
   for (const Vector& X : mesh.points) {
     exact.push_back({(stretch - 1.0) * X[0], (stretch - 1.0) * X[1], (stretch - 1.0) * X[2]});
   }
-  const MethodChoice choice{.method = std::string(TypeParam::name)};
-  EXPECT_LT(largest_distance(answer(scene, choice), exact), 1e-7 * (1.0 - stretch) * 0.15);
+  EXPECT_LT(largest_distance(answer(scene, choice()), exact), 1e-7 * (1.0 - stretch) * 0.15);
 }
 
 /// A thick ball, from the faces of a cube of n x n elements each.
@@ -299,10 +291,9 @@ TEST(Gravity, lets_a_body_fall) {
 
 /// Springs carry the weight of a body, which nothing else holds: k times their mean displacement times the
 /// area.
-TYPED_TEST(PressedTest, springs_carry_the_weight) {
-  const MethodChoice choice{.method = std::string(TypeParam::name)};
-  if (is_condensed<TypeParam>) GTEST_SKIP() << "refuses springs";
-  if (!TestFixture::controls()) GTEST_SKIP() << "has no equilibrium";
+TEST_P(PressedTest, springs_carry_the_weight) {
+  if (method.is_condensed) GTEST_SKIP() << "refuses springs";
+  if (leaves_hourglass_modes(choice())) GTEST_SKIP() << "has no equilibrium";
   Case description = plain_case(NeoHookean{.young_modulus = 30000.0, .poisson_ratio = 0.45});
   const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
   NodeSets sets{{"foot", plane(mesh.points, 2, 0.0)}};
@@ -310,7 +301,7 @@ TYPED_TEST(PressedTest, springs_carry_the_weight) {
   description.forces.of<Support>() = {{"foot", k, 0.0, false}};
   description.forces.of<Gravity>() = {{{1.0, 0.5, -9.81}}};
   const Scene scene = make_scene(description, mesh, sets);
-  const NodalField u = answer(scene, choice);
+  const NodalField u = answer(scene, choice());
   Vector sum{};
   for (const Quadrilateral& face : faces_within(scene.boundary, sets.at("foot"))) {
     for (const auto& point : gauss_points_of(corners_of(mesh.points, face))) {

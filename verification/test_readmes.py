@@ -96,9 +96,9 @@ class Follower:
         compiler = "c++ -std=c++20 -O0 -fno-math-errno -Wno-psabi"
         compiler += " -Isolver -Isuite -Iverification -isystem /usr/include/eigen3"
         compiler = f"ccache {compiler}" if shutil.which("ccache") else compiler
-        for source in (f"verification/{name}.cpp", "verification/support/eigenvalues.cpp"):
+        for source in (f"verification/{name}.cpp", "verification/support/dense_matrix.cpp"):
             self.run(f"{compiler} -c {source} -o {Path(source).stem}.o")
-        self.run(f"c++ {name}.o eigenvalues.o -lgtest_main -lgtest -lfmt -o {name}")
+        self.run(f"c++ {name}.o dense_matrix.o -lgtest_main -lgtest -lfmt -o {name}")
         assert int(re.search(r"PASSED\s+\] (\d+) test", self.run(f"./{name}"))[1]) >= 4
 
     def only_what_was_added(self, path):

@@ -8,7 +8,7 @@
 #include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
 #include "support/derivatives.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/fitting_elements.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/path.hpp"
@@ -92,7 +92,7 @@ std::vector<Mesh> distorted_meshes() {
   for (auto& X : distorted.points) {
     for (double& x : X) x += random.uniform(-0.12, 0.12);
   }
-  return {fitting_patch<FormulationOf<T4, NeoHookean>>(), distorted};
+  return {fitting_patch("t4"), distorted};
 }
 
 struct Method {

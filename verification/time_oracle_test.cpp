@@ -25,7 +25,7 @@ class TimeOracleTest : public ::testing::Test {
   static MethodChoice choice() { return {.method = std::string(Method::name), .accuracy = 1.0}; }
 };
 
-TYPED_TEST_SUITE(TimeOracleTest, MovingMethodTypes, EntryName);
+TYPED_TEST_SUITE(TimeOracleTest, detail::AsTestTypes<MovingMethods>::type, EntryName);
 
 double norm(const std::vector<double>& a) {
   double square = 0.0;

@@ -6,7 +6,7 @@
 #include "assembly/method_entry.hpp"
 #include "solve/relaxation.hpp"
 #include "support/derivatives.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/orderings.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/path.hpp"

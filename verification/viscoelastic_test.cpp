@@ -4,7 +4,7 @@
 
 #include "material/laws.hpp"
 #include "support/derivatives.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 #include "support/softening.hpp"

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Dense>
+#include <limits>
 
 #include "problem/model.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/newton_krylov.hpp"
 #include "support/plain_assembly.hpp"
 
@@ -82,15 +83,14 @@ class Balance {
     return slopes;
   }
 
-  /// The tangent stiffness of the free components, column by column.
-  Eigen::MatrixXd tangent(const std::vector<double>& u) const {
-    const auto n = static_cast<Eigen::Index>(size());
-    Eigen::MatrixXd K(n, n);
-    std::vector<double> direction(size(), 0.0);
-    for (std::size_t k = 0; k < size(); ++k) {
+  /// The tangent stiffness of the free components, by rows.
+  std::vector<double> tangent(const std::vector<double>& u) const {
+    const std::size_t n = size();
+    std::vector<double> K(n * n), direction(n, 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
       direction[k] = 1.0;
       const std::vector<double> column = derivative(u, direction);
-      K.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(column.data(), n);
+      for (std::size_t row = 0; row < n; ++row) K[row * n + k] = column[row];
       direction[k] = 0.0;
     }
     return K;
@@ -99,16 +99,12 @@ class Balance {
   /// Free components in balance at a share of the imposed displacements, by Newton's method from x.
   std::vector<double> solved(const std::vector<double>& x, double share, double unit,
                              double tolerance) const {
-    const Eigen::PartialPivLU<Eigen::MatrixXd> solver(tangent(displacements(x, share)));
+    const std::vector<double> K = tangent(displacements(x, share));
     const NonlinearSystem system{[&](const auto& at) { return free_of(forces(displacements(at, share))); },
                                  [&](const auto& at, const auto& direction) {
                                    return derivative(displacements(at, share), direction);
                                  },
-                                 [&](const auto& r) {
-                                   const Eigen::VectorXd z = solver.solve(Eigen::Map<const Eigen::VectorXd>(
-                                       r.data(), static_cast<Eigen::Index>(r.size())));
-                                   return std::vector<double>(z.begin(), z.end());
-                                 }};
+                                 factored(K.data(), static_cast<int>(size()))};
     return solved_by_newton_krylov(system, x, unit, tolerance);
   }
 

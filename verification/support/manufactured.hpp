@@ -32,21 +32,22 @@ Tensor<T> field_gradient(const Field& field, const Triple<T>& X) {
 
 /// A field and its equilibrium loads: b = -Div P in the body, t = P N on its surface. P is the stress of the
 /// method's theory, the law's or that of small strains.
-template <class Method, class Law, class Field>
+template <class Field>
 struct ManufacturedSolution {
   Field field;
-  Law law;
+  AnyLaw law;
+  bool linear = false;  ///< of small-strain theory
 
   /// First Piola-Kirchhoff stress, Pa.
   Tensor<double> stress(const Triple<double>& X) const {
-    return exact_stress<Method>(law, field_gradient(field, X));
+    return exact_stress(linear, law, field_gradient(field, X));
   }
 
   /// N/m^3.
   Triple<double> body_force(const Triple<double>& X) const {
     Triple<double> b{};
     for (int j = 0; j < 3; ++j) {
-      const Tensor<D> P = exact_stress<Method>(law, field_gradient(field, moving_along(X, j)));
+      const Tensor<D> P = exact_stress(linear, law, field_gradient(field, moving_along(X, j)));
       for (int i = 0; i < 3; ++i) b(i, 0) -= P(i, j).slope;
     }
     return b;

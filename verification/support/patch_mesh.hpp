@@ -1,8 +1,28 @@
 #pragma once
 
+#include "base/error.hpp"
+#include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
 namespace sandglass::verification {
+
+/// Whether a method accepts the elements of a mesh.
+inline bool accepts(std::string_view method, const Mesh& mesh) {
+  try {
+    make_internal_force(mesh, sample_law<NeoHookean>(0.45), {.method = std::string(method)});
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Coordinates of a random element that a method accepts.
+inline NodalVectors<double> fitting_hexahedron(RandomGeometry& random, std::string_view method) {
+  for (;;) {
+    const NodalVectors<double> X = random.hexahedron();
+    if (accepts(method, one_strained_element(X, {}).first)) return X;
+  }
+}
 
 /// The patch of MacNeal and Harder 1985: seven distorted hexahedra in the unit cube. Nodes 0 to 7 are the
 /// inner ones, 8 to 15 the corners of the cube, both in VTK order.
@@ -21,15 +41,13 @@ inline Mesh macneal_harder_patch() {
 
 inline constexpr int first_corner = 8;
 
-/// The same with inner nodes moved towards a regular patch, by as many quarters of the distance as the kernel
+/// The same with inner nodes moved towards a regular patch, by as many quarters of the distance as the method
 /// requires: none for hexahedra; but one corner of the patch has edges that span a negative volume, which
 /// tetrahedra cannot have.
-template <class Kernel>
-Mesh fitting_patch() {
+inline Mesh fitting_patch(std::string_view method) {
   Mesh mesh = macneal_harder_patch();
   const NodalField distorted = mesh.points;
-  const auto accepted = [&](const Hexahedron& cell) { return Kernel::accepts(gather(mesh.points, cell)); };
-  for (double share = 0.25; !std::ranges::all_of(mesh.cells, accepted); share += 0.25) {
+  for (double share = 0.25; !accepts(method, mesh); share += 0.25) {
     for (int n = 0; n < first_corner; ++n) {
       for (int i = 0; i < 3; ++i) {
         const double regular = 0.5 + 0.25 * corner_signs(n, i);

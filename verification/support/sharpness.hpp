@@ -4,7 +4,7 @@
 
 #include "mesh/quality.hpp"
 #include "solve/stable_step.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/mesh_tangent.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/softening.hpp"

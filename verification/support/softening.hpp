@@ -4,7 +4,7 @@
 
 #include "material/small_strain.hpp"
 #include "mesh/hexahedron.hpp"
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 #include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
@@ -30,27 +30,6 @@ Tensor<double> taut(const Sample& sample) {
     while (!(deviator(H)(0, 0) > 0.0 && deviator(H)(1, 1) > 0.0)) H = sample();
   }
   return H;
-}
-
-/// The factor for loads in tests of large motions: where pressure is averaged, laws that do not split it off
-/// bear strains of a few percent (nu = .45).
-template <class Law>
-constexpr double bearable_load() {
-  return Law::traits.splits_volume ? 1.0 : 0.1;
-}
-
-/// Whether a homogeneous state of large strain may be unstable although method and law are sound by
-/// themselves: where a pressure is averaged that the law does not split off (see StVenantKirchhoff), and
-/// where compressed fibres may buckle into uncontrolled hourglass modes.
-template <class Method, class Law>
-constexpr bool may_give_way() {
-  if constexpr (is_adaptive<Method>) {
-    bool any = false;
-    for_each_type(typename Method::Levels{}, [&]<class Level>() { any = any || may_give_way<Level, Law>(); });
-    return any;
-  }
-  if (Method::Kinematics::traits.averages_pressure && !Law::traits.splits_volume) return true;
-  return zero_energy_modes<Method>() > 6 && !is_isotropic<Law>;
 }
 
 /// Whether a law loses stiffness at some Gauss point of an element with coordinates X (m) displaced by u (m).

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "support/dense_matrix.hpp"
 #include "support/derivatives.hpp"
-#include "support/eigenvalues.hpp"
 
 namespace sandglass::verification {
 

@@ -142,7 +142,6 @@ using PairsOf =
 
 /// The methods that support viscoelastic laws.
 using ViscoelasticMethods = detail::ViscoelasticIn<Methods>::type;
-using ViscoelasticMethodTypes = detail::AsTestTypes<ViscoelasticMethods>::type;
 
 using MethodWithLawTypes = detail::AsTestTypes<Concatenated<
     PairsOf<Methods>, detail::Product<ViscoelasticMethods, TypeList<Viscoelastic<NeoHookean>>>::type>>::type;
@@ -150,19 +149,14 @@ using MethodWithLawTypes = detail::AsTestTypes<Concatenated<
 /// Methods with a unique answer: static answers of methods that integrate resistances depend on the path,
 /// relaxing ones need time, and damping ones lose energy.
 using PathIndependentMethods = detail::PathIndependent<Methods>::type;
-using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
-using PathIndependentPairTypes = detail::AsTestTypes<PairsOf<PathIndependentMethods>>::type;
 
-using UpdatedLagrangianTypes = detail::AsTestTypes<detail::Updated<Methods>::type>::type;
-
-/// Those of them that take steps, static or in motion: a condensed method answers directly and supports no
-/// motion.
+/// Those that take steps, static or in motion: a condensed method answers directly and supports no motion.
 using SteppedMethods = detail::Stepped<PathIndependentMethods>::type;
-using SteppedMethodTypes = detail::AsTestTypes<SteppedMethods>::type;
-using SteppedPairTypes = detail::AsTestTypes<PairsOf<SteppedMethods>>::type;
 
 /// All methods that support motion, whatever their answers depend on.
-using MovingMethodTypes = detail::AsTestTypes<detail::Stepped<Methods>::type>::type;
+using MovingMethods = detail::Stepped<Methods>::type;
+
+using UpdatedLagrangianTypes = detail::AsTestTypes<detail::Updated<Methods>::type>::type;
 
 using ElasticMethodWithLawTypes = detail::AsTestTypes<detail::Elastic<PairsOf<Methods>>::type>::type;
 
@@ -174,19 +168,22 @@ constexpr int zero_energy_modes() {
   return integration_points<Method> == 1 && (!control.active || control.damps_only) ? 18 : 6;
 }
 
-/// Test names from the entries' own names. '-' has a meaning in test filters, so it becomes '_'.
+/// The name of an entry as a part of a test's name. '-' has a meaning in test filters, so it becomes '_'.
+inline std::string test_label(std::string name) {
+  std::ranges::replace_if(
+      name, [](char c) { return c == '-' || c == ' '; }, '_');
+  return name;
+}
+
+/// Test names from the entries' own names.
 struct EntryName {
   template <class Entry>
   static std::string GetName(int /*index*/) {
-    std::string label;
     if constexpr (requires { Entry::label(); }) {
-      label = Entry::label();
+      return test_label(Entry::label());
     } else {
-      label = std::string(Entry::name);
+      return test_label(std::string(Entry::name));
     }
-    std::replace_if(
-        label.begin(), label.end(), [](char c) { return c == '-' || c == ' '; }, '_');
-    return label;
   }
 };
 

@@ -1,7 +1,9 @@
-#include "support/eigenvalues.hpp"
+#include "support/dense_matrix.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
+#include <unsupported/Eigen/MatrixFunctions>
 
 namespace sandglass::verification {
 
@@ -37,6 +39,21 @@ double largest_eigenvalue_magnitude(const double* entries, int size) {
     power = (power * power).eval();
   }
   return std::exp(log_radius);
+}
+
+std::function<std::vector<double>(const std::vector<double>&)> factored(const double* entries, int size) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return [solver = Eigen::PartialPivLU<Eigen::MatrixXd>(Eigen::Map<const Rows>(entries, size, size)),
+          size](const std::vector<double>& b) {
+    const Eigen::VectorXd x = solver.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), size));
+    return std::vector<double>(x.begin(), x.end());
+  };
+}
+
+std::vector<double> exponential(const double* entries, int size) {
+  // Rows serve as columns: the exponential of the transpose is the transpose of the exponential.
+  const Eigen::MatrixXd exp = Eigen::MatrixXd(Eigen::Map<const Eigen::MatrixXd>(entries, size, size)).exp();
+  return {exp.data(), exp.data() + exp.size()};
 }
 
 }  // namespace sandglass::verification
