@@ -13,7 +13,7 @@
 #include "support/static_answer.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::adaptive_test {
 namespace {
 
 /// A block of distorted elements, large enough for several chunks, pressed hard on part of its top.
@@ -426,4 +426,4 @@ TEST(Adaptive, wrong_input_is_refused) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::adaptive_test

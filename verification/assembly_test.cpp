@@ -18,7 +18,7 @@
 #include "support/path.hpp"
 #include "support/random_hexahedra.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::assembly_test {
 namespace {
 
 const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.49};
@@ -403,4 +403,4 @@ TYPED_TEST(RowsTest, gather_and_scatter_reach_the_rows_of_their_lanes) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::assembly_test

@@ -13,7 +13,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::batch_test {
 namespace {
 
 constexpr double step = 1e-3;  // s; stable for all bodies below
@@ -394,4 +394,4 @@ TEST(Batch, unsupported_features_are_refused) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::batch_test

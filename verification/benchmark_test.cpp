@@ -14,7 +14,7 @@
 #include "support/allocations.hpp"
 #include "support/method_test.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::benchmark_test {
 namespace {
 
 TEST(Statistics, quantiles_of_known_samples) {
@@ -305,4 +305,4 @@ TEST(MachineSpeed, is_a_positive_number) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::benchmark_test

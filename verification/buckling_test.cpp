@@ -12,7 +12,7 @@
 #include "support/dense_matrix.hpp"
 #include "support/random_scene.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::buckling_test {
 namespace {
 
 /// A different scene for each number: columns clamped at one end, or at both but free to shorten, and arches
@@ -218,4 +218,4 @@ TEST(Buckling, what_is_called_stable_is_a_minimum) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::buckling_test

@@ -13,7 +13,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::case_file_test {
 namespace {
 
 const std::string good = box_case("good", "[1.0, 2.0, 3.0]", "[1, 2, 3]") + R"([sets]
@@ -760,4 +760,4 @@ TEST(CaseFile, mesh_file_gives_the_same_scene) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::case_file_test

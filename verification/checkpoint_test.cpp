@@ -12,7 +12,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::checkpoint_test {
 namespace {
 
 /// A block on its foot, with a driven head and a load on its side.
@@ -262,4 +262,4 @@ TEST_F(CheckpointFileTest, removes_what_killed_programs_left) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::checkpoint_test

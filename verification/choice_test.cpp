@@ -15,7 +15,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::choice_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -400,4 +400,4 @@ TEST(Reference, that_is_stored_has_its_own_error) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::choice_test

@@ -12,7 +12,7 @@
 #include "problem/scene_refinement.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::chosen_case_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -225,4 +225,4 @@ n = 0.1
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::chosen_case_test

@@ -12,7 +12,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::coarser_mesh_test {
 namespace {
 
 /// The value of one element's trilinear form, summed from the shape functions; of nodes, the position.
@@ -169,4 +169,4 @@ TEST(CoarserMeshes, are_coarser_and_there_once) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::coarser_mesh_test

@@ -8,7 +8,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::comparison_test {
 namespace {
 
 TEST(Accuracy, of_equal_fields_is_zero) {
@@ -217,4 +217,4 @@ TEST(Golden, column) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::comparison_test

@@ -12,7 +12,7 @@
 #include "support/single_element.hpp"
 #include "support/tangent.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::compression_test {
 namespace {
 
 /// The tangent between the twelve hourglass modes h_a e_i / sqrt(8) of one element; row and column 3 a + i.
@@ -364,4 +364,4 @@ TEST_P(BlockTest, blocks_between_plates_do_not_hourglass_before_the_sides_wrinkl
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::compression_test

@@ -9,7 +9,7 @@
 #include "support/distorted_bar.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::condensed_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -386,4 +386,4 @@ TEST(LayeredCholeskyTest, refuses_what_is_not_positive_definite) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::condensed_test

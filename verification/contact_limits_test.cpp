@@ -9,7 +9,7 @@
 #include "solve/central_difference.hpp"
 #include "support/two_bodies.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::contact_limits_test {
 namespace {
 
 constexpr double modulus = 1e4, density = 1000.0;
@@ -220,4 +220,4 @@ TEST(ContactLimits, places_no_obstacle_by_default) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::contact_limits_test

@@ -17,7 +17,7 @@
 #include "support/random_scene.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::contact_motion_test {
 namespace {
 
 constexpr std::array both_methods{Obstacle::Method::penalty, Obstacle::Method::kinematic};
@@ -571,4 +571,4 @@ TEST(Contact, moves_in_a_simulation_of_a_static_case) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::contact_motion_test

@@ -12,7 +12,7 @@
 #include "support/obstacles.hpp"
 #include "support/pressed.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::contact_published_test {
 namespace {
 
 /// Hertz 1882: cases/hertz.toml presses a ball of radius R = 10 m by d = 1 mm into E* = 1.5e7 Pa: F = 4/3 E*
@@ -192,4 +192,4 @@ TEST(Contact, bounces_a_ball_with_its_energy) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::contact_published_test

@@ -14,7 +14,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::contact_test {
 namespace {
 
 /// Obstacles of every shape, seen from both sides, that the origin touches or is a little inside of.
@@ -347,4 +347,4 @@ TEST(Contact, rejects_wrong_input) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::contact_test

@@ -8,7 +8,7 @@
 #include "fuzz/readers.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::corpus_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,4 +41,4 @@ INSTANTIATE_TEST_SUITE_P(EveryReader, CorpusTest, ::testing::ValuesIn(readers),
                          [](const auto& reader) { return std::string(reader.param.name); });
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::corpus_test

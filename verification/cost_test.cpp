@@ -21,7 +21,7 @@
 #include "support/case_text.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::cost_test {
 namespace {
 
 bool proceed(double /*share*/) {
@@ -225,4 +225,4 @@ TEST(ProgramShape, of_four_operations) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::cost_test

@@ -14,7 +14,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::device_simulation_test {
 namespace {
 
 class DeviceSimulation : public ::testing::Test {
@@ -234,4 +234,4 @@ TEST_F(DeviceSimulation, what_cannot_stay_there_is_refused_by_name) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::device_simulation_test

@@ -18,7 +18,7 @@
 #include "support/random_scene.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::device_test {
 namespace {
 
 class Device : public ::testing::Test {
@@ -327,4 +327,4 @@ TEST_F(Device, names_that_are_no_processor_are_refused_with_those_that_are) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::device_test

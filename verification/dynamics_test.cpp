@@ -9,7 +9,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::dynamics_test {
 namespace {
 
 constexpr double density = 1000.0;
@@ -325,4 +325,4 @@ TEST(Dynamics, velocity_of_driven_nodes_is_that_of_the_loading_curve) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::dynamics_test

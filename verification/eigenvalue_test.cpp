@@ -6,7 +6,7 @@
 
 #include "support/sharpness.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::eigenvalue_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -242,4 +242,4 @@ TYPED_TEST(EigenvalueTest, step_is_safe_with_a_stiff_hourglass_control) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::eigenvalue_test

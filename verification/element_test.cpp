@@ -8,7 +8,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::element_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -211,4 +211,4 @@ TEST(PerturbationHourglassControl, auto_gives_the_same_stiffness_on_either_modul
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::element_test

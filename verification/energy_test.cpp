@@ -8,7 +8,7 @@
 #include "solve/central_difference.hpp"
 #include "support/random_scene.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::energy_test {
 namespace {
 
 /// A different scene for each number: a free box of 8 to 96 elements, half of them distorted; Poisson's ratio
@@ -123,4 +123,4 @@ TEST(Energy, of_free_motions_does_not_grow) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::energy_test

@@ -11,7 +11,7 @@
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::equilibrium_oracle_test {
 namespace {
 
 double norm(const std::vector<double>& a) {
@@ -234,4 +234,4 @@ TEST(EquilibriumOracle, relaxed_laws_find_their_balance) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::equilibrium_oracle_test

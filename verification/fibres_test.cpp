@@ -15,7 +15,7 @@
 #include "support/sample_law.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::fibres_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -164,4 +164,4 @@ TEST(VolumetricPart, has_known_values) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::fibres_test

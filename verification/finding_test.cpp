@@ -8,7 +8,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::finding_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -151,4 +151,4 @@ TEST(Symptoms, show_locking_under_loads) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::finding_test

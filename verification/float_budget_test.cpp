@@ -11,7 +11,7 @@
 #include "solve/stable_step.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::float_budget_test {
 namespace {
 
 /// Half a unit in the last place of 1, 6.0e-8: the relative error of one rounding in float.
@@ -225,4 +225,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, FloatBudgetTest,
                          });
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::float_budget_test

@@ -9,7 +9,7 @@
 #include "forces/forces.hpp"
 #include "mesh/box.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::force_test {
 namespace {
 
 /// Three unit vectors along the edges of a turned box.
@@ -261,4 +261,4 @@ TEST(Force, acts_on_a_part_as_on_its_faces_alone) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::force_test

@@ -11,7 +11,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::formula_test {
 namespace {
 
 toml::table formulas() {
@@ -107,4 +107,4 @@ TEST(Formula, shakes_a_free_body) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::formula_test

@@ -9,7 +9,7 @@
 #include "support/tangent.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::formulation_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -253,4 +253,4 @@ TYPED_TEST(OnePointKernelTest, perturbation_method_is_equation_14) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::formulation_test

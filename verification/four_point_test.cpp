@@ -10,7 +10,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/single_element.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::four_point_test {
 namespace {
 
 template <class Kernel>
@@ -163,4 +163,4 @@ TEST(Levels, constants_from_coordinates_are_those_of_the_set_up) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::four_point_test

@@ -15,7 +15,7 @@
 #include "support/dense_matrix.hpp"
 #include "support/random_scene.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::held_test {
 namespace {
 
 /// Boxes side by side, on top of each other, or joined by an edge or a node; some have meshes that do not
@@ -328,4 +328,4 @@ TEST(Held, is_required_for_a_static_answer) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::held_test

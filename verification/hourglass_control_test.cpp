@@ -9,7 +9,7 @@
 #include "support/tangent.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::hourglass_control_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -180,4 +180,4 @@ TEST(FollowingControl, sees_fluctuations_in_base_vectors_that_move_with_the_body
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::hourglass_control_test

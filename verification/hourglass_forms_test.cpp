@@ -8,7 +8,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::hourglass_forms_test {
 namespace {
 
 template <class Form>
@@ -208,4 +208,4 @@ TYPED_TEST(HourglassFormTest, skew_plate_bends_exactly_when_enhanced) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::hourglass_forms_test

@@ -12,7 +12,7 @@
 #include "support/random_scene.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::largest_frequency_test {
 namespace {
 
 using Kernel = FormulationOf<TlMeanDilatation, NeoHookean>;
@@ -217,4 +217,4 @@ TEST(LargestFrequency, steps_that_prove_too_long_are_taken_again) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::largest_frequency_test

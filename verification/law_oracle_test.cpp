@@ -5,12 +5,12 @@
 #include "material/laws.hpp"
 #include "material/small_strain.hpp"
 #include "support/current_tangent.hpp"
-#include "support/derivatives.hpp"
 #include "support/dense_matrix.hpp"
+#include "support/derivatives.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::law_oracle_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -395,4 +395,4 @@ TEST(HolzapfelOgden, shortened_fibres_are_slack) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::law_oracle_test

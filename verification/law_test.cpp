@@ -5,14 +5,14 @@
 #include "material/laws.hpp"
 #include "material/small_strain.hpp"
 #include "support/current_tangent.hpp"
-#include "support/derivatives.hpp"
 #include "support/dense_matrix.hpp"
+#include "support/derivatives.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 #include "support/softening.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::law_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -289,4 +289,4 @@ TYPED_TEST(LawTest, kirchhoff_stress_is_that_of_piola) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::law_test

@@ -13,7 +13,7 @@
 #include "support/pressed.hpp"
 #include "support/two_bodies.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::line_contact_test {
 namespace {
 
 /// A block of unit thickness, as wide to both sides as it is deep, whose surface bulges towards z = 0 like a
@@ -181,4 +181,4 @@ TEST(LineContact, sticks_in_the_middle_at_rest) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::line_contact_test

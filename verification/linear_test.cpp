@@ -8,7 +8,7 @@
 #include "support/exact_stress.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::linear_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -91,4 +91,4 @@ TEST(LinearTest, a_block_that_turns_by_60_degrees_grows) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::linear_test

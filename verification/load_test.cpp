@@ -13,7 +13,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::load_test {
 namespace {
 
 Vector cross_product(const Vector& a, const Vector& b) {
@@ -360,4 +360,4 @@ TEST(Load, set_without_faces_is_refused) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::load_test

@@ -9,7 +9,7 @@
 #include "support/pair_test.hpp"
 #include "support/softening.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::manufactured_test {
 namespace {
 
 /// Compressible, and soft tissue: K/mu = 2.2 and 9.7.
@@ -186,4 +186,4 @@ TEST(Manufactured, uncontrolled_gradients_lose_their_order_on_distorted_meshes) 
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::manufactured_test

@@ -19,7 +19,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::materials_test {
 namespace {
 
 struct MaterialsTest : MethodTest {
@@ -322,4 +322,4 @@ TEST(Materials, wrong_input_is_refused) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::materials_test

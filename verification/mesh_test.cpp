@@ -24,7 +24,7 @@
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::mesh_test {
 namespace {
 
 Scene canonical(const std::string& name) {
@@ -564,4 +564,4 @@ TEST(Masses, sum_to_density_times_volume) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::mesh_test

@@ -6,7 +6,7 @@
 #include "mesh/hexahedron.hpp"
 #include "support/random_hexahedra.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::modes_test {
 namespace {
 
 constexpr double eps = 0x1p-52;
@@ -60,4 +60,4 @@ TEST(Modes, the_last_mode_has_no_mean_gradient) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::modes_test

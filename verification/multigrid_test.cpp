@@ -9,7 +9,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::multigrid_test {
 namespace {
 
 /// A bar of distorted elements, held at one end; no method involved.
@@ -182,4 +182,4 @@ TEST(Multigrid, poisson_ratios_of_zero_and_less_take_no_more_than_others) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::multigrid_test

@@ -6,7 +6,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::neo_hookean_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -130,4 +130,4 @@ TEST(NeoHookean, agrees_with_the_textbook_form_in_long_double) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::neo_hookean_test

@@ -15,7 +15,7 @@
 #include "support/sample_law.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::number_type_test {
 namespace {
 
 constexpr double eps = 0x1p-52;
@@ -185,4 +185,4 @@ TEST(Counted, distinguishes_the_kinds_and_skips_constants) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::number_type_test

@@ -16,7 +16,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::obstacle_crossing_test {
 namespace {
 
 /// An obstacle about the origin, with half its thickness (m) and its distances.
@@ -228,4 +228,4 @@ TEST(ObstacleCrossing, ends_the_motion_of_a_program) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::obstacle_crossing_test

@@ -13,7 +13,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::ogden_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -271,4 +271,4 @@ TEST(Ogden, tangent_bound_holds_for_every_exponent) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::ogden_test

@@ -11,7 +11,7 @@
 #include "support/scenes.hpp"
 #include "support/softening.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::pairs_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -146,4 +146,4 @@ TEST(Pairs, linear_methods_refuse_laws_that_relax) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::pairs_test

@@ -12,7 +12,7 @@
 #include "support/patch_mesh.hpp"
 #include "support/random_hexahedra.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::patch_test {
 namespace {
 
 constexpr double young_modulus = 1e6;
@@ -194,4 +194,4 @@ TEST_P(PatchTest, affine_displacements_are_an_equilibrium) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::patch_test

@@ -12,7 +12,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::point_mass_test {
 namespace {
 
 constexpr double height = 0.4, area = 0.01, density = 800.0, total = 5.0;  // the column has 3.2 kg
@@ -127,4 +127,4 @@ TEST(PointMass, is_part_of_the_case) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::point_mass_test

@@ -11,7 +11,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::published_test {
 namespace {
 
 /// A block whose upper face is a set.
@@ -256,4 +256,4 @@ TEST(Published, json_keeps_such_runs_apart_with_every_value) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::published_test

@@ -8,7 +8,7 @@
 #include "support/balance.hpp"
 #include "support/random_scene.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::random_scenes_test {
 namespace {
 
 /// Solves a static scene, checks the answer with a plain assembly, and returns the number of evaluations.
@@ -142,4 +142,4 @@ TEST(RandomScenes, that_failed_once_reach_equilibrium) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::random_scenes_test

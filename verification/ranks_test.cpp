@@ -15,7 +15,7 @@
 #include "support/plates.hpp"
 #include "support/thread_ranks.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::ranks_test {
 namespace {
 
 /// A block between two plates under a pressure from one side.
@@ -211,4 +211,4 @@ TEST(Ranks, element_that_sets_the_stable_step_is_found_on_any_rank) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::ranks_test

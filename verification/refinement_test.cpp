@@ -15,7 +15,7 @@
 #include "support/manufactured.hpp"
 #include "support/method_test.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::refinement_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -335,4 +335,4 @@ TEST_P(RefinedBodyTest, converges_with_second_order) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::refinement_test

@@ -10,7 +10,7 @@
 #include "support/random_scene.hpp"
 #include "support/thread_ranks.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::relations_test {
 namespace {
 
 // Relations: a problem, its own answer, and random numbers for arbitrary choices.
@@ -345,4 +345,4 @@ TEST(Relations, hold) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::relations_test

@@ -7,7 +7,7 @@
 #include "support/obstacles.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::resting_contact_test {
 namespace {
 
 /// The largest distance of displacements from others, over the largest of those.
@@ -397,4 +397,4 @@ TEST(RestingContact, carries_a_block_in_equilibrium) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::resting_contact_test

@@ -16,7 +16,7 @@
 #include "support/static_answer.hpp"
 #include "support/two_bodies.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::resting_pair_test {
 namespace {
 
 struct Rest {
@@ -361,4 +361,4 @@ TEST(RestingPair, names_what_is_wrong) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::resting_pair_test

@@ -16,7 +16,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::rotation_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -341,4 +341,4 @@ TEST(RotationInput, bad_ones_are_reported) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::rotation_test

@@ -10,7 +10,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::shape_slopes_test {
 namespace {
 
 constexpr double factor = 0.7;  // of all load curves
@@ -211,4 +211,4 @@ TEST(ShapeSlopes, rotated_sets_move_with_their_positions) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::shape_slopes_test

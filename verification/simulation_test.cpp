@@ -13,7 +13,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::simulation_test {
 namespace {
 
 constexpr double step = 1e-3;  // s; stable for the blocks below
@@ -369,6 +369,21 @@ TEST(Simulation, reactions_are_the_internal_forces_on_driven_nodes) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(simulation.reaction("head")[i], expected[i], 1e-12);
 }
 
+/// Two sets share an edge, and each drives one component there.
+TEST(Simulation, a_set_moves_only_the_components_imposed_on_it) {
+  const std::string sides =
+      "[sets.side]\nx = [0.0, 0.0]\n[[displacement]]\nset = \"side\"\nvalue = [0.0, 0.0, 0.0]\n"
+      "components = \"x\"\n[[displacement]]\nset = \"head\"\nvalue = [0.0, 0.0, 0.0]\ncomponents = \"z\"\n";
+  Simulation<double> simulation(block(), text_of(sides));
+  simulation.move("head", {0.0, 0.0, 0.02});
+  simulation.move("side", {0.0, 0.0, 0.0});
+  simulation.settle();
+  const NodalField u = field_of(simulation);
+  for (const int n : simulation.nodes("head")) EXPECT_EQ(u[index(n)][2], 0.02);
+  EXPECT_EQ(simulation.reaction("side")[2], 0.0);
+  EXPECT_NEAR(simulation.reaction("head")[2], -simulation.reaction("foot")[2], 1e-6);
+}
+
 TEST(Simulation, single_precision_follows_double) {
   Simulation<double> exact(block(), text_of(pulled));
   Simulation<float> rounded(block(), text_of(pulled));
@@ -518,4 +533,4 @@ TEST(Simulation, refuses_meshes_that_are_none) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::simulation_test

@@ -10,7 +10,7 @@
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::sleep_test {
 namespace {
 
 std::size_t count(const std::vector<bool>& marked) {
@@ -282,4 +282,4 @@ TEST(OnPart, keeps_what_the_scene_has_there) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::sleep_test

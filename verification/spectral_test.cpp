@@ -14,7 +14,7 @@
 #include "support/derivatives.hpp"
 #include "support/random_hexahedra.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::spectral_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -332,4 +332,4 @@ TEST(IsotropicTensor, has_the_derivative_of_the_matrix_function) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::spectral_test

@@ -11,7 +11,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::stability_test {
 namespace {
 
 constexpr double limit = 0.01;
@@ -281,4 +281,4 @@ TEST_F(CellFilesTest, damaged_ones_are_refused) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::stability_test

@@ -13,7 +13,7 @@
 #include "support/tangent.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::stable_step_test {
 namespace {
 
 template <class Pair>
@@ -154,4 +154,4 @@ TEST(StableStep, is_that_of_the_smallest_element) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::stable_step_test

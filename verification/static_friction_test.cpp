@@ -12,7 +12,7 @@
 #include "support/static_answer.hpp"
 #include "support/two_bodies.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::static_friction_test {
 namespace {
 
 /// The interface z of NAFEMS CGS-4, and the wedge above it.
@@ -312,4 +312,4 @@ TEST(StaticFriction, is_not_found_from_an_answer_alone) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::static_friction_test

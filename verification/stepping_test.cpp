@@ -12,7 +12,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::stepping_test {
 namespace {
 
 /// A block on its foot whose head is moved by `d`.
@@ -414,4 +414,4 @@ TEST_P(StepperTest, direction_does_not_matter) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::stepping_test

@@ -8,7 +8,7 @@
 #include "support/sample_law.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::stiffening_test {
 namespace {
 
 template <class Law>
@@ -48,4 +48,4 @@ TYPED_TEST(StiffeningTest, is_the_mean_curvature_of_the_energy) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::stiffening_test

@@ -18,7 +18,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::subcycling_test {
 namespace {
 
 const NeoHookean soft{.young_modulus = 3000.0, .poisson_ratio = 0.3};
@@ -407,4 +407,4 @@ TEST(Subcycling, refuses_what_depends_on_more_than_displacements) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::subcycling_test

@@ -21,7 +21,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::surface_load_test {
 namespace {
 
 /// The nodes at which a coordinate has the value `at`.
@@ -407,4 +407,4 @@ value = [0.0, 0.0, 0.0]
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::surface_load_test

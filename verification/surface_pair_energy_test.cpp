@@ -10,7 +10,7 @@
 #include "support/random_scene.hpp"
 #include "support/two_bodies.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::surface_pair_energy_test {
 namespace {
 
 /// The largest energy (J) beyond what there was at the start and loads worked, and the largest energy.
@@ -205,4 +205,4 @@ TEST(SurfacePair, collides_at_random) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::surface_pair_energy_test

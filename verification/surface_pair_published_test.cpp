@@ -12,7 +12,7 @@
 #include "support/pressed.hpp"
 #include "support/two_bodies.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::surface_pair_published_test {
 namespace {
 
 /// Two equal bars collide (FrontISTR's tworods), with meshes that do not match: the stress rho c v acts from
@@ -238,4 +238,4 @@ TEST(SurfacePair, pushes_a_wedge_uphill_with_the_published_force) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::surface_pair_published_test

@@ -17,7 +17,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/two_bodies.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::surface_pair_test {
 namespace {
 
 /// A box falls obliquely, turning, onto the corner region of another; neither is held.
@@ -400,4 +400,4 @@ TEST(SurfacePair, names_what_is_wrong) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::surface_pair_test

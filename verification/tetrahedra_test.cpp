@@ -7,14 +7,14 @@
 #include "counting/operation_count.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
-#include "support/derivatives.hpp"
 #include "support/dense_matrix.hpp"
+#include "support/derivatives.hpp"
 #include "support/fitting_elements.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/path.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::tetrahedra_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -327,4 +327,4 @@ TEST(TetrahedraTest, corners_without_volume_are_refused) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::tetrahedra_test

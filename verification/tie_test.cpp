@@ -11,7 +11,7 @@
 #include "support/scenes.hpp"
 #include "support/static_answer.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::tie_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -137,4 +137,4 @@ TEST(Tie, wrong_input_is_refused) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::tie_test

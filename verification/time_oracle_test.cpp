@@ -12,7 +12,7 @@
 #include "support/semi_discrete.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::time_oracle_test {
 namespace {
 
 constexpr double density = 1000.0;
@@ -348,4 +348,4 @@ TYPED_TEST(TimeOracleTest, spinning_block_keeps_its_momenta) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::time_oracle_test

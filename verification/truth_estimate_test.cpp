@@ -15,7 +15,7 @@
 #include "support/scenes.hpp"
 #include "support/static_answer.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::truth_estimate_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -273,4 +273,4 @@ TEST(RefineUntilWithin, says_how_near_it_came) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::truth_estimate_test

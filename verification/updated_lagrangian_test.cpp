@@ -5,8 +5,8 @@
 
 #include "assembly/method_entry.hpp"
 #include "solve/relaxation.hpp"
-#include "support/derivatives.hpp"
 #include "support/dense_matrix.hpp"
+#include "support/derivatives.hpp"
 #include "support/orderings.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/path.hpp"
@@ -14,7 +14,7 @@
 #include "support/single_element.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::updated_lagrangian_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -307,4 +307,4 @@ TEST(UpdatedLagrangian, differs_less_than_kappa_by_a_quarter) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::updated_lagrangian_test

@@ -8,7 +8,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::variants_test {
 namespace {
 
 /// A file with two axes; "size" is first in the file but last in the alphabet.
@@ -108,4 +108,4 @@ TEST(Variants, bad_ones_are_refused_with_file_line_and_rule) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::variants_test

@@ -17,7 +17,7 @@
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::viscoelastic_body_test {
 namespace {
 
 using Law = Viscoelastic<NeoHookean>;
@@ -395,4 +395,4 @@ TEST(ViscoelasticCase, held_brain_tissue_loses_the_energy_of_its_relaxation_time
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::viscoelastic_body_test

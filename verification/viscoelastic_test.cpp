@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "material/laws.hpp"
-#include "support/derivatives.hpp"
 #include "support/dense_matrix.hpp"
+#include "support/derivatives.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 #include "support/softening.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::viscoelastic_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -358,4 +358,4 @@ TEST(ViscoelasticPrecision, does_not_drift_in_a_hundred_thousand_steps) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::viscoelastic_test

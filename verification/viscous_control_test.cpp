@@ -9,7 +9,7 @@
 #include "support/scenes.hpp"
 #include "support/single_element.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::viscous_control_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -158,4 +158,4 @@ TEST(ViscousControl, thrown_block_loses_energy) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::viscous_control_test

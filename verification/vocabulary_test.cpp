@@ -9,7 +9,7 @@
 #include "support/sample_law.hpp"
 #include "support/typed_lists.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::vocabulary_test {
 namespace {
 
 template <class Number>
@@ -120,4 +120,4 @@ TYPED_TEST(Vocabulary, elements_are_those_of_doubles) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::vocabulary_test

@@ -13,7 +13,7 @@
 #include "support/temporary_folder.hpp"
 #include "written/kernel_text.hpp"
 
-namespace sandglass::verification {
+namespace sandglass::verification::written_test {
 namespace {
 
 /// The results of a program for these inputs.
@@ -246,4 +246,4 @@ TEST(Tape, keeps_selections) {
 }
 
 }  // namespace
-}  // namespace sandglass::verification
+}  // namespace sandglass::verification::written_test

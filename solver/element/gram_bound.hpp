@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "math/symmetric_matrix.hpp"
+#include "mesh/hexahedron.hpp"
 
 /// Upper bounds of the largest eigenvalue of sums of stiffnesses that act on different nodes of an element.
 /// The sum of their largest eigenvalues would be three times too large, since their modes differ.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "math/matrix.hpp"
+#include "mesh/hexahedron.hpp"
 
 /// The modal form of nodal values. Trilinear fields are spanned by one translation, three linear and four
 /// hourglass modes whose nodal values are +1 or -1, so that the transformation and its transpose consist of

@@ -5,6 +5,7 @@
 #include "material/memory.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 

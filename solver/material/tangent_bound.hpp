@@ -90,8 +90,8 @@ TangentBound<T> viscoelastic_tangent_bound(const Law& law, const Tensor<T>& H, c
 
 /// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): an upper bound of the largest
 /// eigenvalue per volume (Pa/m^2), since (tr L)^2 <= |g|^2 |v|^2 and |L|^2 <= lambda_max |v|^2 for L = v^T g.
-template <class T>
-T gradient_bound(const TangentBound<T>& bound, const NodalVectors<T>& g) {
+template <class T, int nodes>
+T gradient_bound(const TangentBound<T>& bound, const Matrix<T, nodes, 3>& g) {
   const Tensor<T> G = transpose(g) * g;
   return max(bound.volumetric, T(0)) * trace(G) + bound.gradient * largest_eigenvalue_bound(G);
 }

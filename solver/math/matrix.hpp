@@ -33,10 +33,6 @@ struct Matrix {
 template <class T>
 using Tensor = Matrix<T, 3, 3>;
 
-/// Three components at each of the eight nodes of a hexahedron: displacements, forces, coordinates.
-template <class T>
-using NodalVectors = Matrix<T, 8, 3>;
-
 /// Three components.
 template <class T>
 using Triple = Matrix<T, 3, 1>;

@@ -4,9 +4,28 @@
 
 #include "math/matrix.hpp"
 
-/// Geometry of the trilinear hexahedron: nodes in VTK order, shape functions, hourglass base vectors, mean
-/// gradients. For set-up, in double precision.
+/// The trilinear hexahedron: nodes in VTK order, faces, edges, shape functions, hourglass base vectors, mean
+/// gradients; for set-up, in double precision. It is the only shape of elements; the rest of the library
+/// takes the numbers of its nodes, faces and edges from here.
 namespace sandglass {
+
+/// The nodes of a hexahedron, VTK order.
+using Hexahedron = std::array<int, 8>;
+
+/// The nodes of a face, counterclockwise seen from outside.
+using Quadrilateral = std::array<int, 4>;
+
+/// Three components at each node of a hexahedron: displacements, forces, coordinates.
+template <class T>
+using NodalVectors = Matrix<T, 8, 3>;
+
+/// The corners of each face, counterclockwise seen from outside.
+inline constexpr std::array<std::array<std::size_t, 4>, 6> hexahedron_faces{
+    {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+
+/// The corners at the ends of each edge.
+inline constexpr std::array<std::array<std::size_t, 2>, 12> hexahedron_edges{
+    {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 
 /// Parent coordinates (xi, eta, zeta) of the eight nodes, VTK order.
 inline constexpr NodalVectors<double> corner_signs{{-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1,  //

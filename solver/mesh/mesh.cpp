@@ -10,14 +10,6 @@
 
 namespace sandglass {
 
-namespace {
-
-/// Faces of the hexahedron, counterclockwise seen from outside.
-constexpr std::array<std::array<std::size_t, 4>, 6> local_faces{
-    {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
-
-}  // namespace
-
 double largest_distance(const NodalField& a, const NodalField& b) {
   double largest = 0.0;
   for (std::size_t n = 0; n < a.size(); ++n) {
@@ -32,7 +24,7 @@ std::vector<Quadrilateral> boundary_faces(std::span<const Hexahedron> cells) {
   std::vector<Quadrilateral> faces, keys;  // keys have their nodes in ascending order
   int last = -1;
   for (const auto& cell : cells) {
-    for (const auto& local : local_faces) {
+    for (const auto& local : hexahedron_faces) {
       faces.push_back({cell[local[0]], cell[local[1]], cell[local[2]], cell[local[3]]});
       keys.push_back(faces.back());
       std::sort(keys.back().begin(), keys.back().end());
@@ -55,7 +47,7 @@ std::vector<Quadrilateral> boundary_faces(std::span<const Hexahedron> cells) {
       throw InputError(fmt::format(
           "elements {} and {} lie on the same side of their common face, or share it with a third; elements "
           "must not overlap",
-          f / local_faces.size(), other / local_faces.size()));
+          f / hexahedron_faces.size(), other / hexahedron_faces.size()));
     }
     if (count == 1) boundary.push_back(faces[f]);
   }

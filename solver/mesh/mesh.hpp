@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "math/matrix.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 
@@ -32,12 +32,6 @@ inline double length(const Vector& v) {
 inline double distance(const Vector& a, const Vector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
-
-/// The eight nodes of a hexahedron, VTK order.
-using Hexahedron = std::array<int, 8>;
-
-/// Four nodes of a face, counterclockwise seen from outside.
-using Quadrilateral = std::array<int, 4>;
 
 /// Nodes and hexahedra, in the numbering that every file and table uses.
 struct Mesh {

@@ -62,9 +62,10 @@ void make_constraints(const Case& description, Scene& scene) {
         description.file.string(), c.node, "xyz"[c.component], described(first.constraint.path, angles),
         first.set, described(c.path, angles), set));
   };
-  const auto drive = [&](const std::string& set) {
-    if (std::ranges::find(scene.driven, set, &DrivenSet::name) == scene.driven.end())
-      scene.driven.push_back({set, {}});
+  std::map<std::string, std::array<bool, 3>> components_of;  // that the entries of a set impose
+  const auto drive = [&](const std::string& set, const std::array<bool, 3>& components) {
+    if (!components_of.contains(set)) scene.driven.push_back({set, {}});
+    for (std::size_t i = 0; i < 3; ++i) components_of[set][i] |= components[i];
   };
   int group = 0;
   for (const auto& displacement : description.displacements) {
@@ -74,7 +75,7 @@ void make_constraints(const Case& description, Scene& scene) {
           impose({node, i, {{displacement.value[at(i)]}}, group}, displacement.set);
       }
     }
-    drive(displacement.set);
+    drive(displacement.set, displacement.components);
     ++group;
   }
   for (const auto& turned : description.rotations) {
@@ -88,14 +89,16 @@ void make_constraints(const Case& description, Scene& scene) {
       for (int i = 0; i < 3; ++i) impose({node, i, paths[at(i)]}, turned.set);
     }
     scene.turned.push_back({nodes, turned.axis, angle, !turned.center});
-    drive(turned.set);
+    drive(turned.set, {true, true, true});
   }
   for (const auto& [at_node, origin] : imposed) {
     if (!is_tied(scene.ties, at_node.first)) scene.constraints.push_back(origin.constraint);
   }
   for (DrivenSet& driven : scene.driven) {
-    for_each_constraint(scene.constraints, scene.sets.at(driven.name),
-                        [&](std::size_t k, std::size_t /*n*/) { driven.constraints.push_back(k); });
+    const auto& imposed_by_set = components_of.at(driven.name);
+    for_each_constraint(scene.constraints, scene.sets.at(driven.name), [&](std::size_t k, std::size_t /*n*/) {
+      if (imposed_by_set[at(scene.constraints[k].component)]) driven.constraints.push_back(k);
+    });
   }
 }
 

@@ -27,7 +27,7 @@ struct Constraint {
 /// A driven node set.
 struct DrivenSet {
   std::string name;
-  std::vector<std::size_t> constraints;  ///< of its nodes
+  std::vector<std::size_t> constraints;  ///< of its nodes, in the components imposed on the set; ascending
 };
 
 /// A node set that turns about an axis, whose paths follow from the positions of its nodes.

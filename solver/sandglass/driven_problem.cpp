@@ -16,12 +16,15 @@ namespace sandglass {
 
 namespace {
 
-/// Obstacles are sets of one node.
+/// The driven components of each set: those imposed on it; of other sets, those of their nodes. Obstacles are
+/// sets of one node.
 std::map<std::string, std::vector<Driven>> driven_sets(const Scene& scene) {
   std::map<std::string, std::vector<Driven>> driven;
-  for (const auto& set : scene.sets) {
-    for_each_constraint(scene.constraints, set.second, [&](std::size_t k, std::size_t n) {
-      driven[set.first].push_back({k, n, at(scene.constraints[k].component)});
+  for (const auto& [name, nodes] : scene.sets) {
+    const auto own = std::ranges::find(scene.driven, name, &DrivenSet::name);
+    for_each_constraint(scene.constraints, nodes, [&, &set = name](std::size_t k, std::size_t n) {
+      if (own == scene.driven.end() || std::ranges::binary_search(own->constraints, k))
+        driven[set].push_back({k, n, at(scene.constraints[k].component)});
     });
   }
   std::size_t next = scene.constraints.size();

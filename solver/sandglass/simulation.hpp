@@ -74,7 +74,8 @@ class Simulation {
   ~Simulation();
 
   /// Sets the target of a set's driven nodes for the end of the next `advance`: `displacement` (m) for all of
-  /// them. Components that are free in the case stay free. Nodes without a new target keep their last one.
+  /// them. Components that the case does not impose on the set stay as they are; of a set on which it imposes
+  /// nothing, those of its nodes that other sets drive move. Nodes without a new target keep their last one.
   /// With the name of an [[obstacle]], its target: a displacement in addition to its path in the case. Throws
   /// InputError for a set without driven nodes, listing the driven sets, and for numbers that are not finite.
   void move(const std::string& set, const std::array<double, 3>& displacement);
@@ -120,9 +121,9 @@ class Simulation {
   /// The row of each node in views. Renumber your drawing once, and no frame needs a copy.
   std::span<const int> row_of_node() const;
 
-  /// The force (N) that holds or drives a set of nodes: the sum over its driven components, without the
-  /// inertia of the nodes themselves. Or the force of the obstacle of this name on the body. Throws
-  /// InputError like `move`.
+  /// The force (N) that holds or drives a set of nodes: the sum over the components that `move` moves,
+  /// without the inertia of the nodes themselves. Or the force of the obstacle of this name on the body.
+  /// Throws InputError like `move`.
   std::array<double, 3> reaction(const std::string& set) const;
 
   /// The moment (N m) of the force of an obstacle on the body about the obstacle's `point` where it is now.

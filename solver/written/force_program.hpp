@@ -7,6 +7,7 @@
 #include "element/hourglass_settings.hpp"
 #include "material/called_law.hpp"
 #include "math/recorded.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 

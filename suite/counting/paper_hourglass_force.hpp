@@ -1,7 +1,7 @@
 #pragma once
 
 #include "counting/counted.hpp"
-#include "math/matrix.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 

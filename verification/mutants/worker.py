@@ -79,8 +79,10 @@ def programs_of(tree):
     folder = tree / "verification"
     text = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
     programs = []
-    # A library, the target whose precompiled headers are shared, and the programs.
-    for library, names in re.findall(r"^add_tests\((\w+) \w+\n([^)]*)\)", text, re.MULTILINE):
+    # Each file of tests is also a program of its own: its library, and its name or those of several.
+    own = re.findall(r"^add_own_test\((\w+) (\w+) \w+\)", text, re.MULTILINE)
+    lists = re.findall(r"^add_tests\(\w+ (\w+) \w+\n([^)]*)\)", text, re.MULTILINE)
+    for library, names in [*lists, *((library, name) for name, library in own)]:
         for name in names.split():
             size = (folder / f"{name}.cpp").stat().st_size
             programs.append(Program(name, False, library != "sandglass_options", size))

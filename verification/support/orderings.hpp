@@ -3,7 +3,7 @@
 #include <array>
 #include <set>
 
-#include "math/matrix.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass::verification {
 
