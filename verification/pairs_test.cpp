@@ -41,6 +41,23 @@ double stiffness(const AnyLaw& any_law, const Tensor<double>& H) {
       any_law);
 }
 
+/// Tests skip methods by these properties, so a wrong one could hide a failure.
+TEST(MethodEntries, have_the_properties_of_their_types) {
+  for_each_type(Methods{}, []<class Method>() {
+    SCOPED_TRACE(Method::name);
+    const MethodEntry& entry = method_named(Method::name);
+    EXPECT_EQ(leaves_hourglass_modes({std::string(Method::name)}), zero_energy_modes<Method>() > 6);
+    EXPECT_EQ(entry.is_linear, is_linear<Method>);
+    EXPECT_EQ(entry.is_condensed, is_condensed<Method>);
+    EXPECT_EQ(entry.pressure_varies, pressure_varies<Method>);
+    EXPECT_EQ(entry.takes_kappa, Method::Hourglass::traits.takes_kappa);
+    EXPECT_EQ(entry.adapts(), is_adaptive<Method>);
+    EXPECT_EQ(entry.knows_viscoelasticity, (knows_law<Method, Viscoelastic<NeoHookean>>));
+    constexpr bool updated = std::is_same_v<typename Method::Kinematics, UpdatedOnePoint>;
+    EXPECT_EQ(is_updated_lagrangian(entry), updated);
+  });
+}
+
 /// Expects the forces V h P^T of an element with corners at X under the stress P, up to roundoff:
 /// displacements and coordinates are rounded to eps times the size, times the stiffness (Pa).
 void expect_forces(const NodalField& force, const NodalVectors<double>& X, const Tensor<double>& P,
