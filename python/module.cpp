@@ -251,8 +251,8 @@ PYBIND11_MODULE(_sandglass, m) {
       .def("move", &move, "set"_a, "displacement"_a,
            "Sets the position of the driven nodes of a set at the end of the next `advance`: one "
            "displacement (m) for all of them, or one row for each node of `nodes(set)`. Components "
-           "that the case leaves free stay free. With the name of an obstacle, its displacement in "
-           "addition to its path in the case.")
+           "that the case does not impose on the set stay as they are. With the name of an obstacle, "
+           "its displacement in addition to its path in the case.")
       .def(
           "impose",
           [](AnySimulation& self, const py::object& given) {
