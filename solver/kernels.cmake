@@ -29,7 +29,8 @@ compile_quickly(sandglass_scalar_untimed)
 compile_together(sandglass_scalar_untimed)
 target_sources(sandglass_library PRIVATE $<TARGET_OBJECTS:sandglass_packed>)
 
-# The laws that kernels call, in the library, where all is fully optimised; for a number type and its header; a further argument is the type of their parameters.
+# The laws that kernels call, for a number type and its header; a further argument is the type of their parameters. They are part of the
+# library, where everything is fully optimised.
 function(add_called_law target number header name)
   set(NUMBER ${number})
   set(VALUE double ${ARGN})

@@ -92,6 +92,10 @@ class ManufacturedTest : public ::testing::TestWithParam<std::tuple<VariantOf<Ex
             return orders(choice, law, field, 6, share);
           },
           any_field);
+      const std::string where = (share > 0.0 ? "_distorted_nu_" : "_regular_nu_") + std::to_string(nu);
+      RecordProperty("order_L2" + where, std::to_string(found.displacement));
+      RecordProperty("order_H1" + where, std::to_string(found.gradient));
+      RecordProperty("order_nodal" + where, std::to_string(found.nodal));
       EXPECT_NEAR(found.displacement, 2.0, 0.1) << "nu " << nu;
       EXPECT_NEAR(found.gradient, 1.0, 0.1) << "nu " << nu;
       const bool slack = std::visit([]<class Law>(const Law&) { return slackens<Law>; }, law);

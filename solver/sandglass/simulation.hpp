@@ -74,10 +74,11 @@ class Simulation {
   ~Simulation();
 
   /// Sets the target of a set's driven nodes for the end of the next `advance`: `displacement` (m) for all of
-  /// them. Components that the case does not impose on the set stay as they are; of a set on which it imposes
-  /// nothing, those of its nodes that other sets drive move. Nodes without a new target keep their last one.
-  /// With the name of an [[obstacle]], its target: a displacement in addition to its path in the case. Throws
-  /// InputError for a set without driven nodes, listing the driven sets, and for numbers that are not finite.
+  /// them. Components that the case does not impose on the set stay as they are. If it imposes nothing on the
+  /// set, the components that it imposes on the set's nodes through other sets move. Nodes without a new
+  /// target keep their last one. With the name of an [[obstacle]], its target: a displacement in addition to
+  /// its path in the case. Throws InputError for a set without driven nodes, listing the driven sets, and for
+  /// numbers that are not finite.
   void move(const std::string& set, const std::array<double, 3>& displacement);
 
   /// The same with a displacement (m) for each node of `nodes(set)`; too few are an InputError.

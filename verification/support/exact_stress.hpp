@@ -33,4 +33,9 @@ T exact_energy(bool linear, const Law& law, const Tensor<T>& H) {
   return linear ? T(0.5) * double_dot(exact_stress(true, law, H), H) : law.energy(H);
 }
 
+template <class T>
+T exact_energy(bool linear, const AnyLaw& any_law, const Tensor<T>& H) {
+  return std::visit([&](const auto& law) { return exact_energy(linear, law, H); }, any_law);
+}
+
 }  // namespace sandglass::verification
