@@ -7,8 +7,8 @@ A change is any difference from the revision in .ci/linted, where `ci/lint all` 
 Every changed source is checked. A finding in a header shows up in any source that includes it: for
 changed headers that no changed source includes, as few others are added as include them all.
 Effects of a changed header on the other sources that include it are left to `ci/lint all`. All
-sources are checked if that revision is not in this clone (a shallow one), or if the checks
-themselves changed.
+sources are checked if that revision is not in this clone (a shallow one). If the checks themselves
+changed, `ci/lint all` must find nothing first, which takes up to an hour: exit status 1.
 """
 
 import re
@@ -63,12 +63,15 @@ def affected(root, sources, changed):
 
 
 def chosen(root, sources):
-    """(the sources to check, why)."""
+    """(the sources to check, why). Exits if the checks changed."""
     revision, changed = changed_files(root)
     if changed is None:
         return sources, f"{revision[:12]}, the revision in .ci/linted, is not in this clone"
     if checks := sorted(CHECKS & changed):
-        return sources, f"{', '.join(checks)} changed since {revision[:12]}"
+        sys.exit(
+            f"ci/lint: {', '.join(checks)} changed since {revision[:12]}: run `ci/lint all`,"
+            " and commit .ci/linted, which it writes"
+        )
     return affected(root, sources, changed), f"what changed since {revision[:12]}"
 
 

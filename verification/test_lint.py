@@ -79,8 +79,6 @@ def clone(tmp_path):
             ["solver/base/both.cpp", "app/main.cpp"],
         ),
         (["solver/base/lone.hpp", "solver/base/near.hpp"], ["solver/base/both.cpp"]),
-        ([".clang-tidy"], SOURCES),
-        (["ci/tidy.py"], SOURCES),
     ],
 )
 def test_changed_sources_and_one_that_includes_each_changed_header(
@@ -97,6 +95,13 @@ def test_new_files_are_changes_and_deleted_ones_are_not_looked_at(clone):
     clone.write("solver/base/deep.cpp", '#include "base/new.hpp"\n')
     (clone.root / "solver/base/lone.hpp").unlink()
     assert clone.chosen()[0] == ["solver/base/deep.cpp"]
+
+
+@pytest.mark.parametrize("changed", [".clang-tidy", "ci/tidy.py"])
+def test_changed_checks_require_a_run_on_all_sources(clone, changed):
+    clone.touch(changed)
+    with pytest.raises(SystemExit, match=f"{changed} changed since .*: run `ci/lint all`"):
+        clone.chosen()
 
 
 def test_all_sources_where_the_revision_is_unknown(clone, tmp_path):
