@@ -26,7 +26,7 @@ endforeach()
 precompile_headers(sandglass_packed <assembly/kernels.hpp>)
 reuse_precompiled_headers(sandglass_scalar sandglass_packed)
 compile_quickly(sandglass_scalar_untimed)
-compile_together(sandglass_scalar_untimed)
+compile_together(sandglass_scalar_untimed 8)
 target_sources(sandglass_library PRIVATE $<TARGET_OBJECTS:sandglass_packed>)
 
 # The laws that kernels call, for a number type and its header; a further argument is the type of their parameters. They are part of the

@@ -24,7 +24,7 @@ constexpr std::size_t free_memory = std::size_t{64} << 20U;
 /// The change of displacement gradients in differences of forces: its square is their error, and the
 /// precision of the forces over it their rounding. Where fibres begin to bear, forces have a kink, and the
 /// error is of first order.
-constexpr double change = 4e-7;
+constexpr double change_of_gradients = 4e-7;
 
 /// The steps after which the ratio of an adjoint's gradient to its size is measured again.
 constexpr std::size_t steps_per_measure = 32;
@@ -193,7 +193,7 @@ class MotionAdjoint {
     const double size = largest(w_);
     if (!(size > 0.0)) return;
     if (measured_++ % steps_per_measure == 0) gradient_over_size_ = largest_gradient() / size;
-    const double length = change / (gradient_over_size_ * size);
+    const double length = change_of_gradients / (gradient_over_size_ * size);
     for (const double side : {1.0, -1.0}) {
       state_.u = u;
       add(side * length, w_, state_.u, blocks());
