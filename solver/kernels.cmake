@@ -48,7 +48,7 @@ endforeach()
 
 foreach(REAL double float)
   set(NUMBER "Pack<${REAL}>")
-  add_generated(sandglass_library assembly/batch_kernels_source.cpp.in batch_${REAL}.cpp)
+  add_generated(sandglass_packed assembly/batch_kernels_source.cpp.in batch_${REAL}.cpp)
 endforeach()
 
 # The kernels of each method for the number types that run. A method's header, type and name are spelt alike: tl_none.hpp, TlNone,

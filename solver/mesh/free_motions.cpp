@@ -1,53 +1,57 @@
 #include "mesh/free_motions.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
+#include "math/dense.hpp"
 #include "mesh/disjoint_sets.hpp"
 #include "mesh/node_elements.hpp"
+#include "mesh/vectors.hpp"
 
 namespace sandglass {
 
 namespace {
-
-using Eigen::Index;
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// A motion counts as free if it moves all holds by at most this fraction of itself.
 constexpr double tolerance = 1e-5;
 
 constexpr std::size_t most_pieces = 100;
 
-using Unknowns = Eigen::Matrix<double, 6, 1>;  // of a piece: translation and rotation
+using Unknowns = std::array<double, 6>;  // of a piece: translation and rotation
 
-/// Columns that span the motions that all rows leave free; each row is the displacement of a hold or joint as
-/// a linear function of the unknowns.
-Eigen::MatrixXd null_space(const RowMatrix& rows) {
-  const Index n = rows.cols();
-  if (rows.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
-  // Of many rows only the triangle of the QR decomposition is kept, which has the same singular values.
-  RowMatrix triangle = RowMatrix::Zero(n, n);
-  constexpr Index block = 512;
-  for (Index first = 0; first < rows.rows(); first += block) {
-    const Index count = std::min(block, rows.rows() - first);
-    RowMatrix stacked(n + count, n);
-    stacked << triangle, rows.middleRows(first, count);
-    triangle = RowMatrix(
-        Eigen::HouseholderQR<RowMatrix>(stacked).matrixQR().topRows(n).triangularView<Eigen::Upper>());
+using Coefficients = std::vector<double>;
+
+double product(std::span<const double> a, std::span<const double> b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// Vectors of length one that span the motions of n unknowns that all rows leave free; each row is the
+/// displacement of a hold or joint as a linear function of the unknowns. They are eigenvectors of the
+/// products of columns, whose eigenvalues are sums of squares over the rows: the tolerance squared is far
+/// above roundoff.
+std::vector<Coefficients> null_space(const std::vector<Coefficients>& rows, std::size_t n) {
+  std::vector<double> products(n * n);
+  for (const Coefficients& row : rows) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (row[i] == 0.0) continue;
+      for (std::size_t j = 0; j < n; ++j) products[i * n + j] += row[i] * row[j];
+    }
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
-  std::vector<Index> free;
-  for (Index k = 0; k < n; ++k) {
-    // The root mean square is at most the largest value, and needs no second pass over the rows.
-    const double mean = svd.singularValues()[k] / std::sqrt(static_cast<double>(rows.rows()));
-    if (mean <= tolerance && (rows * svd.matrixV().col(k)).cwiseAbs().maxCoeff() <= tolerance)
-      free.push_back(k);
+  const Eigenpairs pairs = symmetric_eigenpairs(products);
+  const double most = tolerance * tolerance * static_cast<double>(rows.size());
+  std::vector<Coefficients> free;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Coefficients& motion = pairs.vectors[k];
+    const auto moved = [&](const Coefficients& row) { return std::abs(product(row, motion)) > tolerance; };
+    // The mean square is at most the largest, and needs no second pass over the rows.
+    if (pairs.values[k] <= most && std::ranges::none_of(rows, moved)) free.push_back(motion);
   }
-  return svd.matrixV()(Eigen::all, free);
+  return free;
 }
 
 /// Elements that are rigid together, and their joints with others.
@@ -74,16 +78,13 @@ class Pieces {
     return of_element(element);
   }
 
-  /// Adds to a row the displacement in a direction at a point of a piece, as a function of its six unknowns,
-  /// which begin at `first`.
-  template <class Row>
-  void add(const Vector& X, const Vector& direction, double factor, std::size_t piece, Row&& row) const {
+  /// Adds to a row the displacement in a direction at a point of a piece, as a function of its six unknowns.
+  void add(const Vector& X, const Vector& direction, double factor, std::size_t piece, Unknowns& row) const {
     const auto& [elements, centre, radius] = pieces_[piece];
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-      row[static_cast<Index>(i)] += factor * direction[i];
-      row[static_cast<Index>(3 + i)] +=
-          factor * ((X[j] - centre[j]) * direction[k] - (X[k] - centre[k]) * direction[j]) / radius;
+      row[i] += factor * direction[i];
+      row[3 + i] += factor * ((X[j] - centre[j]) * direction[k] - (X[k] - centre[k]) * direction[j]) / radius;
     }
   }
 
@@ -164,17 +165,19 @@ class Pieces {
   }
 
   static bool on_a_line(const NodalField& points) {
-    Eigen::Matrix<double, 3, Eigen::Dynamic> arms(3, static_cast<Index>(points.size()));
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      for (std::size_t i = 0; i < 3; ++i)
-        arms(static_cast<Index>(i), static_cast<Index>(k)) = points[k][i] - points[0][i];
+    Vector along{};
+    for (const Vector& X : points) {
+      const Vector arm = difference(X, points[0]);
+      if (dot(arm, arm) > dot(along, along)) along = arm;
     }
-    Index farthest = 0;
-    const double length = arms.colwise().norm().maxCoeff(&farthest);
-    if (length == 0.0) return true;
-    const Eigen::Vector3d along = arms.col(farthest) / length;
-    const double off = (arms - along * (along.transpose() * arms)).colwise().norm().maxCoeff();
-    return off <= tolerance * length;
+    const double squared_length = dot(along, along);
+    double off = 0.0;  // squared
+    for (const Vector& X : points) {
+      const Vector arm = difference(X, points[0]);
+      const Vector beside = sum(arm, -dot(along, arm) / squared_length, along);
+      off = std::max(off, dot(beside, beside));
+    }
+    return !(off > tolerance * tolerance * squared_length);
   }
 
   void number() {
@@ -214,32 +217,38 @@ void add_mean(const Mesh& mesh, const Pieces& pieces, const std::vector<Tie::Sha
   for (const auto& [node, weight] : mean_of) {
     const auto piece = pieces.of_node(node);
     if (!piece) continue;
-    auto& row = equation.try_emplace(*piece, Unknowns::Zero()).first->second;
+    auto& row = equation[*piece];
     pieces.add(mesh.points[at(node)], direction, factor * weight, *piece, row);
   }
 }
 
-/// The rows of equations in unknowns of which each piece has a block of columns.
-RowMatrix rows_of(const std::vector<const Equation*>& equations,
-                  const std::map<std::size_t, std::pair<Index, const Eigen::MatrixXd*>>& columns,
-                  Index unknowns) {
-  RowMatrix rows = RowMatrix::Zero(static_cast<Index>(equations.size()), unknowns);
+/// The unknowns of a piece among those of its group: factors of its free motions.
+struct Columns {
+  std::size_t first;
+  const std::vector<Coefficients>* motions;
+};
+
+/// The rows of equations in the unknowns of a group.
+std::vector<Coefficients> rows_of(const std::vector<const Equation*>& equations,
+                                  const std::map<std::size_t, Columns>& columns, std::size_t unknowns) {
+  std::vector<Coefficients> rows(equations.size(), Coefficients(unknowns));
   for (std::size_t k = 0; k < equations.size(); ++k) {
     for (const auto& [piece, row] : *equations[k]) {
       const auto found = columns.find(piece);
       if (found == columns.end()) continue;
-      const auto& [first, free] = found->second;
-      rows.row(static_cast<Index>(k)).segment(first, free->cols()) = row.transpose() * *free;
+      const auto& [first, motions] = found->second;
+      for (std::size_t m = 0; m < motions->size(); ++m) rows[k][first + m] = product(row, (*motions)[m]);
     }
   }
   return rows;
 }
 
-RigidMotion motion_of(const Unknowns& unknowns) {
-  RigidMotion motion{};
-  for (Index i = 0; i < 3; ++i) {
-    motion.translation[static_cast<std::size_t>(i)] = unknowns[i];
-    motion.rotation[static_cast<std::size_t>(i)] = unknowns[3 + i];
+/// The motion of a piece in one of those of its group.
+Unknowns motion_within(const Columns& columns, const Coefficients& of_group) {
+  Unknowns motion{};
+  for (std::size_t m = 0; m < columns.motions->size(); ++m) {
+    for (std::size_t i = 0; i < motion.size(); ++i)
+      motion[i] += of_group[columns.first + m] * (*columns.motions)[m][i];
   }
   return motion;
 }
@@ -249,11 +258,12 @@ RigidMotion motion_of(const Unknowns& unknowns) {
 std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const std::vector<Hold>& holds) {
   const Pieces pieces(mesh, ties);
   // Holds of single pieces.
-  std::vector<std::vector<Unknowns>> own(pieces.count());
+  std::vector<std::vector<Coefficients>> own(pieces.count());
   std::vector<Equation> joint;
   const auto add_equation = [&](Equation equation) {
     if (equation.size() == 1) {
-      own[equation.begin()->first].push_back(equation.begin()->second);
+      const auto& [piece, row] = *equation.begin();
+      own[piece].emplace_back(row.begin(), row.end());
     } else if (!equation.empty()) {
       joint.push_back(std::move(equation));
     }
@@ -268,7 +278,7 @@ std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const st
     const std::size_t a = pieces.of_element(pair.first), b = pieces.of_element(pair.second);
     for (const Vector& X : points) {
       for (const Vector& axis : coordinate_axes) {
-        Equation equation{{a, Unknowns::Zero()}, {b, Unknowns::Zero()}};
+        Equation equation;
         pieces.add(X, axis, 1.0, a, equation[a]);
         pieces.add(X, axis, -1.0, b, equation[b]);
         add_equation(std::move(equation));
@@ -283,38 +293,33 @@ std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const st
       add_equation(std::move(equation));
     }
   }
-  std::vector<Eigen::MatrixXd> free;
-  for (const auto& equations : own) {
-    RowMatrix rows(static_cast<Index>(equations.size()), 6);
-    for (std::size_t k = 0; k < equations.size(); ++k)
-      rows.row(static_cast<Index>(k)) = equations[k].transpose();
-    free.push_back(null_space(rows));
-  }
+  std::vector<std::vector<Coefficients>> free;
+  for (const auto& rows : own) free.push_back(null_space(rows, 6));
   // Groups of pieces that are joined and not held.
   DisjointSets sets(pieces.count());
   for (const Equation& equation : joint) {
     std::optional<int> first;
     for (const auto& [piece, row] : equation) {
-      if (free[piece].cols() == 0) continue;
+      if (free[piece].empty()) continue;
       if (first) sets.join(*first, static_cast<int>(piece));
       first = static_cast<int>(piece);
     }
   }
   struct Group {
-    std::map<std::size_t, std::pair<Index, const Eigen::MatrixXd*>> columns;
-    Index unknowns = 0;
+    std::map<std::size_t, Columns> columns;
+    std::size_t unknowns = 0;
     std::vector<const Equation*> equations;
   };
   std::map<int, Group> groups;
   for (std::size_t p = 0; p < pieces.count(); ++p) {
-    if (free[p].cols() == 0) continue;
+    if (free[p].empty()) continue;
     Group& group = groups[sets.least(static_cast<int>(p))];
     group.columns[p] = {group.unknowns, &free[p]};
-    group.unknowns += free[p].cols();
+    group.unknowns += free[p].size();
   }
   for (const Equation& equation : joint) {
     for (const auto& [piece, row] : equation) {
-      if (free[piece].cols() == 0) continue;
+      if (free[piece].empty()) continue;
       groups.at(sets.least(static_cast<int>(piece))).equations.push_back(&equation);
       break;
     }
@@ -322,17 +327,23 @@ std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const st
   std::vector<LooseBody> loose;
   for (const auto& [least, group] : groups) {
     if (group.columns.size() > most_pieces) continue;
-    const Eigen::MatrixXd basis = null_space(rows_of(group.equations, group.columns, group.unknowns));
-    if (basis.cols() == 0) continue;
+    const auto basis = null_space(rows_of(group.equations, group.columns, group.unknowns), group.unknowns);
+    if (basis.empty()) continue;
     LooseBody body;
-    body.motions.resize(static_cast<std::size_t>(basis.cols()));
+    body.motions.resize(basis.size());
     for (const auto& [piece, columns] : group.columns) {
-      const auto& [first, of_piece] = columns;
-      const Eigen::MatrixXd motions = *of_piece * basis.middleRows(first, of_piece->cols());
-      if (motions.cwiseAbs().maxCoeff() <= tolerance) continue;  // held by the others
+      std::vector<Unknowns> motions;
+      double largest = 0.0;
+      for (const Coefficients& motion : basis) {
+        motions.push_back(motion_within(columns, motion));
+        for (const double part : motions.back()) largest = std::max(largest, std::abs(part));
+      }
+      if (largest <= tolerance) continue;  // held by the others
       body.pieces.push_back(pieces[piece]);
-      for (Index m = 0; m < basis.cols(); ++m)
-        body.motions[static_cast<std::size_t>(m)].push_back(motion_of(motions.col(m)));
+      for (std::size_t m = 0; m < basis.size(); ++m) {
+        const auto& [x, y, z, a, b, c] = motions[m];
+        body.motions[m].push_back({{x, y, z}, {a, b, c}});
+      }
     }
     loose.push_back(std::move(body));
   }

@@ -1,8 +1,9 @@
 #include "solve/acceleration.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "math/dense.hpp"
 
 namespace sandglass {
 
@@ -32,21 +33,18 @@ std::vector<double> Acceleration::best_shares() const {
   // Added to the diagonal: steps may be nearly dependent, and products of vectors in single precision are
   // rounded to about this. A combination that relies on smaller differences is useless.
   constexpr double least = 1e-6;
-  const auto n = static_cast<Eigen::Index>(pairs_.size());
-  Eigen::MatrixXd products(n, n);
-  Eigen::VectorXd shares(n), scale(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+  const std::size_t n = pairs_.size();
+  std::vector<double> products(n * n), scale(n), shares(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Pair& pair = pairs_[i];
     scale[i] = 1.0 / std::sqrt(std::max(pair.with_earlier.back(), 1e-300));
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      products(i, j) = scale[i] * scale[j] * pair.with_earlier[static_cast<std::size_t>(j)];
-    }
-    products(i, i) += least;
+    for (std::size_t j = 0; j <= i; ++j) products[i * n + j] = scale[i] * scale[j] * pair.with_earlier[j];
+    products[i * n + i] += least;
     shares[i] = scale[i] * pair.with_residual;
   }
-  products.llt().solveInPlace(shares);
-  shares.array() *= scale.array();
-  return {shares.begin(), shares.end()};
+  shares = solve_positive_definite(products, std::move(shares));
+  for (std::size_t i = 0; i < n; ++i) shares[i] *= scale[i];
+  return shares;
 }
 
 void Acceleration::combine(MixedVector& residual, MixedVector& step) {

@@ -1,11 +1,11 @@
 #include "solve/softest_motions.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "math/dense.hpp"
 #include "math/row_loops.hpp"
 #include "mesh/mesh.hpp"
 
@@ -21,7 +21,7 @@ constexpr float most_lambda_over_mu = 10.0f;
 constexpr long fewest_evaluations = 3, most_evaluations = 100;
 
 /// The largest number of motions kept, and the number to which they are reduced.
-constexpr Eigen::Index most_kept = 12, fewest_kept = 4;
+constexpr std::size_t most_kept = 12, fewest_kept = 4;
 
 /// A start may by accident contain little of some motion. If the smallest eigenvalue is below this, it must
 /// have settled to a share of itself, and another start follows.
@@ -54,13 +54,13 @@ class Davidson {
   }
 
   SoftestMotions find() {
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
+    Eigenpairs small;
     MixedVector next = start(first_phase);
     if (!(dot(next, next, blocks()) > 0.0)) found_.least = 1.0;  // nothing can move
     bool once_more = true;
     long fewest = fewest_evaluations;
     for (int stalled = 0; expand(next); ++stalled) {
-      small.compute(stiffness_);
+      small = symmetric_eigenpairs(between_motions());
       const double before = found_.least;
       const auto [residual, falling] = examine(small, next);
       if (residual < much_less * least_residual_ || falling != falling_) stalled = 0;
@@ -76,10 +76,13 @@ class Davidson {
         stalled = -1;
       }
       if (found_.evaluations >= most_evaluations) break;
-      if (stiffness_.rows() == most_kept) restart(small.eigenvectors().leftCols(fewest_kept));
+      if (motions_.size() == most_kept) {
+        restart(small);
+        small = symmetric_eigenpairs(between_motions());
+      }
     }
-    for (Eigen::Index k = 0; k < falling_; ++k)
-      found_.falling.push_back(combination(small.eigenvectors().col(k), &Motion::direction));
+    for (std::size_t k = 0; k < falling_; ++k)
+      found_.falling.push_back(combination(small.vectors[k], &Motion::direction));
     return std::move(found_);
   }
 
@@ -95,17 +98,15 @@ class Davidson {
   /// Sets the smallest eigenvalue and its error, and `next` to the largest preconditioned residual: of the
   /// smallest one alone or, because potentials will be compared along them, of the first two motions that
   /// lower the potential. Returns its norm, and the number of such motions.
-  std::pair<double, Eigen::Index> examine(const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& small,
-                                          MixedVector& next) {
-    const Eigen::VectorXd& values = small.eigenvalues();
+  std::pair<double, std::size_t> examine(const Eigenpairs& small, MixedVector& next) {
+    const std::vector<double>& values = small.values;
     found_.least = values[0];
-    Eigen::Index falling = 0;
-    while (falling < std::min<Eigen::Index>(2, values.size()) && values[falling] < -found_.resolved)
-      ++falling;
+    std::size_t falling = 0;
+    while (falling < std::min<std::size_t>(2, values.size()) && values[falling] < -found_.resolved) ++falling;
     double largest = -1.0;
-    for (Eigen::Index k = 0; k < std::max<Eigen::Index>(1, falling); ++k) {
+    for (std::size_t k = 0; k < std::max<std::size_t>(1, falling); ++k) {
       MixedVector correction = elements_.zero();
-      const double residual = correct(values[k], small.eigenvectors().col(k), correction);
+      const double residual = correct(values[k], small.vectors[k], correction);
       if (k == 0) {
         const double gap = values.size() > 1 ? values[1] - values[0] : 0.0;
         found_.error = gap > residual ? residual * residual / gap : residual;
@@ -153,7 +154,7 @@ class Davidson {
 
   /// The norm of the residual of an eigenpair of the small problem; sets `correction` to the preconditioned
   /// residual.
-  double correct(double value, const Eigen::VectorXd& shares, MixedVector& correction) {
+  double correct(double value, const std::vector<double>& shares, MixedVector& correction) {
     MixedVector r = combination(shares, &Motion::resistance);
     add(static_cast<float>(-value), combination(shares, &Motion::model), r, blocks());
     mixed_.multigrid().cycle(r, correction);
@@ -195,34 +196,44 @@ class Davidson {
     mixed_.differentiate(direction, length_ / elements_.largest_gradient(direction.u),
                          static_cast<double>(most_lambda_over_mu), motion.resistance.u);
     ++found_.evaluations;
-    motions_.push_back(std::move(motion));
-    const Motion& last = motions_.back();
-    const Eigen::Index n = stiffness_.rows();
-    stiffness_.conservativeResize(n + 1, n + 1);
-    for (Eigen::Index k = 0; k <= n; ++k) {
-      const Motion& other = motions_[static_cast<std::size_t>(k)];
-      stiffness_(k, n) = stiffness_(n, k) = 0.5 * (dot(other.direction, last.resistance, blocks()) +
-                                                   dot(last.direction, other.resistance, blocks()));
+    std::vector<double> row;
+    for (const Motion& other : motions_) {
+      row.push_back(0.5 * (dot(other.direction, motion.resistance, blocks()) +
+                           dot(motion.direction, other.resistance, blocks())));
     }
-    return std::isfinite(stiffness_(n, n));
+    row.push_back(dot(motion.direction, motion.resistance, blocks()));
+    if (!std::isfinite(row.back())) return false;
+    motions_.push_back(std::move(motion));
+    stiffness_.push_back(std::move(row));
+    return true;
   }
 
-  MixedVector combination(const Eigen::VectorXd& shares, MixedVector Motion::*of) const {
+  /// All entries of the stiffness between the motions.
+  std::vector<double> between_motions() const {
+    const std::size_t n = motions_.size();
+    std::vector<double> entries(n * n);
+    for (std::size_t i = 0; i < n; ++i) std::ranges::copy(stiffness_[i], entries.data() + i * n);
+    return entries;
+  }
+
+  MixedVector combination(const std::vector<double>& shares, MixedVector Motion::*of) const {
     MixedVector sum = elements_.zero();
     for (std::size_t k = 0; k < motions_.size(); ++k)
-      add(static_cast<float>(shares[static_cast<Eigen::Index>(k)]), motions_[k].*of, sum, blocks());
+      add(static_cast<float>(shares[k]), motions_[k].*of, sum, blocks());
     return sum;
   }
 
-  void restart(const Eigen::MatrixXd& kept) {
+  /// Keeps the softest motions, between which the stiffness is diagonal.
+  void restart(const Eigenpairs& small) {
     std::vector<Motion> motions;
-    for (Eigen::Index k = 0; k < kept.cols(); ++k) {
-      motions.push_back({combination(kept.col(k), &Motion::direction),
-                         combination(kept.col(k), &Motion::model),
-                         combination(kept.col(k), &Motion::resistance)});
+    stiffness_.clear();
+    for (std::size_t k = 0; k < fewest_kept; ++k) {
+      motions.push_back({combination(small.vectors[k], &Motion::direction),
+                         combination(small.vectors[k], &Motion::model),
+                         combination(small.vectors[k], &Motion::resistance)});
+      stiffness_.emplace_back(k + 1).back() = small.values[k];
     }
     motions_ = std::move(motions);
-    stiffness_ = kept.transpose() * stiffness_ * kept;
   }
 
   MixedBody<Real>& mixed_;
@@ -230,10 +241,10 @@ class Davidson {
   const NodalField& points_;
   std::vector<float> resistance_;  // Pa/m^3, by cell
   double length_;
-  std::vector<Motion> motions_;  // A-orthonormal
-  Eigen::MatrixXd stiffness_;    // between them
+  std::vector<Motion> motions_;                 // A-orthonormal
+  std::vector<std::vector<double>> stiffness_;  // between them, the lower triangle by rows
   double least_residual_ = 0.0;
-  Eigen::Index falling_ = 0;  // motions that lower the potential, at most two
+  std::size_t falling_ = 0;  // motions that lower the potential, at most two
   SoftestMotions found_;
 };
 
