@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "mesh/vectors.hpp"
 #include "solve/adaption.hpp"
 #include "solve/cubic.hpp"
+#include "solve/driving_forces.hpp"
 #include "solve/energy_watch.hpp"
 #include "solve/frame.hpp"
 #include "solve/health.hpp"
@@ -35,10 +35,7 @@ class CentralDifference {
         leapfrog_(model, elements, settings_.damping),
         steady_step_(settings_.damping),
         body_(leapfrog_.body()),
-        reactions_(model.scene().constraints.size(), 0.0),
-        works_(reactions_.size(), 0.0),
-        moved_(model.scene().angles.size()),
-        accelerations_(moved_.size()),
+        driving_(model, body_),
         resident_(resident_motion(model, elements, leapfrog_)) {
     leapfrog_.subcycle(model);
   }
@@ -49,10 +46,7 @@ class CentralDifference {
   double step_size() const { return leapfrog_.step_size(); }
 
   /// Work of imposed displacements and forces since the start, J.
-  double external_work() const {
-    const std::vector<double> all = body_.constraints().of_all(works_);
-    return std::accumulate(all.begin(), all.end(), body_.work_of_loads());
-  }
+  double external_work() const { return body_.work_of_loads() + driving_.work(); }
 
   double adaption_energy() const { return adaption_energy_; }
 
@@ -81,11 +75,8 @@ class CentralDifference {
   void keep(Archive& archive) {
     leapfrog_.keep(archive);
     steady_step_.keep(archive);
-    reactions_ = body_.constraints().of_all(reactions_);
-    works_ = body_.constraints().of_all(works_);
-    archive("reaction", reactions_);
+    driving_.keep(archive);
     archive("next step", next_step_);
-    archive("work", works_);
     archive("adaption energy", adaption_energy_);
   }
 
@@ -127,12 +118,13 @@ class CentralDifference {
 
   /// Leaves the body to the processor that takes its steps, if it is another one.
   void leave() {
-    if (resident_ != nullptr) resident_->begin(body_, reactions_);
+    if (resident_ != nullptr) resident_->begin(body_, driving_.forces());
   }
 
   /// Brings the body here from that processor.
   void arrive() {
-    if (resident_ != nullptr) resident_->bring(body_, curve(time()).value(), time(), reactions_, works_);
+    if (resident_ == nullptr) return;
+    resident_->bring(body_, curve(time()).value(), time(), driving_.forces(), driving_.works());
   }
 
   /// Whether the body, which is then here, is healthy.
@@ -172,14 +164,8 @@ class CentralDifference {
   /// ends. Another processor that takes steps does this as well.
   void add_external_work() {
     if (resident_ != nullptr) return;
-    follow_paths();
-    const auto& constraints = model_.scene().constraints;
-    for (const std::size_t k : body_.constraints().moving()) {
-      const ImposedPath& path = constraints[k].path;
-      const double force = constraint_force(k);
-      works_[k] += 0.5 * (reactions_[k] + force) * path.along(moved_[path.angle]);
-      reactions_[k] = force;
-    }
+    driving_.follow_paths(time(), step_size());
+    driving_.add_work();
     body_.add_work_of_loads();
   }
 
@@ -191,7 +177,7 @@ class CentralDifference {
     body_.evaluate_forces();
     const StrainEnergies now = body_.energies();
     adaption_energy_ += now.strain + now.hourglass - before.strain - before.hourglass;
-    for (std::size_t k = 0; k < reactions_.size(); ++k) reactions_[k] = constraint_force(k);
+    driving_.update();
     return true;
   }
 
@@ -228,46 +214,15 @@ class CentralDifference {
 
   /// The numbers of the last step for another processor.
   ResidentStep numbers_of_step(LeapfrogClock::Coefficients coefficients) {
-    follow_paths();
-    const double now = curve(time()).value(), T = ramp_time(settings_);
+    driving_.follow_paths(time(), step_size());
+    const double now = curve(time()).value();
     ResidentStep numbers{
         coefficients.keep, coefficients.gain, step_size(), body_.factors_of_loads(time(), now), {}};
-    for (std::size_t m = 0; m < moved_.size(); ++m) {
-      const auto& [a, b, c] = accelerations_[m];
+    for (std::size_t m = 0; m < driving_.moved().size(); ++m) {
       numbers.angles.push_back(
-          {path_terms(model_.scene().angles[m], now), moved_[m], {a / (T * T), b / (T * T), c / (T * T)}});
+          {path_terms(model_.scene().angles[m], now), driving_.moved()[m], driving_.accelerations()[m]});
     }
     return numbers;
-  }
-
-  /// Updates the changes of the terms of paths over the last step, and their second derivatives with respect
-  /// to relative time.
-  void follow_paths() {
-    const double now = curve(time()).value(), before = curve(time() - step_size()).value();
-    const double rate = curve(time()).rate(), acceleration = curve(time()).acceleration();
-    for (std::size_t m = 0; m < moved_.size(); ++m) {
-      const double angle = model_.scene().angles[m];
-      const PathTerms from = path_terms(angle, before), to = path_terms(angle, now);
-      const PathTerms first = path_rates(angle, now), second = path_accelerations(angle, now);
-      for (std::size_t i = 0; i < 3; ++i) {
-        moved_[m][i] = to[i] - from[i];
-        accelerations_[m][i] = acceleration * first[i] + rate * rate * second[i];
-      }
-    }
-  }
-
-  /// The force (N) of a constraint: the reaction plus the inertia of the lumped mass.
-  double constraint_force(std::size_t k) const {
-    return body_.reactions()[k] + inertia(model_.scene().constraints[k]);
-  }
-
-  /// The force (N) that accelerates the lumped mass of a driven component.
-  double inertia(const Constraint& constraint) const {
-    const double mass = model_.masses()[at(constraint.node)], T = ramp_time(settings_);
-    double force = 0.0;
-    for (std::size_t i = 0; i < 3; ++i)
-      force += mass * constraint.path.share[i] * accelerations_[constraint.path.angle][i];
-    return force / (T * T);
   }
 
   void require_stable(const StableStep& stable) const {
@@ -286,8 +241,7 @@ class CentralDifference {
   Leapfrog<Real> leapfrog_;
   SteadyStep steady_step_;
   Body<Real>& body_;
-  std::vector<double> reactions_, works_;         // N and J, of constraints
-  std::vector<PathTerms> moved_, accelerations_;  // of paths of each angle
+  DrivingForces<Real> driving_;
   double next_step_ = 0.0;
   double adaption_energy_ = 0.0;
   std::unique_ptr<ResidentMotion<Real>> resident_;  // null: steps are taken here

@@ -10,7 +10,9 @@
 #include "base/error.hpp"
 #include "problem/held.hpp"
 #include "solve/adaption.hpp"
+#include "solve/augmentation_schedule.hpp"
 #include "solve/condensed_answer.hpp"
+#include "solve/driving_forces.hpp"
 #include "solve/equilibrium.hpp"
 #include "solve/frame.hpp"
 #include "solve/health.hpp"
@@ -39,9 +41,9 @@ class Search {
         adaption_(model, equilibrium_.body()),
         load_levels_(model, equilibrium_.body(), depends_on_path(model, elements)),
         no_velocity_(model.masses().size()),
-        reactions_(model.scene().constraints.size(), 0.0),
+        driving_(model, equilibrium_.body()),
         next_check_(settings_.check_interval),
-        augmented_(!equilibrium_.may_touch()) {}
+        augmentations_(equilibrium_.may_touch()) {}
 
   Relaxation run(const Checkpoint* from) {
     if (from != nullptr) {
@@ -90,11 +92,6 @@ class Search {
   /// augmented; levels that would still change at smaller residuals are corrected at the end.
   static constexpr double moderate_tolerance = 1e-3;
 
-  /// Contact is augmented this often, each time at a residual of this share of the last: nodes then sink into
-  /// obstacles by 1e-6 of an edge, and the depth at the first residual no longer influences the answer.
-  static constexpr int most_augmentations = 3;
-  static constexpr double share_of_augmentation = 0.1;
-
   /// Elements without stiffness against hourglass modes have a stable equilibrium on coarse meshes only; the
   /// search for one ends after this many evaluations.
   static constexpr int few_evaluations = 2000;
@@ -124,16 +121,15 @@ class Search {
     equilibrium_.keep(archive);
     load_levels_.keep(archive, body());
     archive("next check", next_check_);
-    archive("reaction", reactions_);
-    archive("work", work_);
+    driving_.keep(archive);
   }
 
   /// At the full load.
   double tolerance() const {
     double tolerance = settings_.tolerance;
     if (is_unsettled()) tolerance = std::max(tolerance, moderate_tolerance);
-    if (!augmented_)
-      tolerance = std::max(tolerance, moderate_tolerance * std::pow(share_of_augmentation, augmentations_));
+    if (!augmentations_.done())
+      tolerance = std::max(tolerance, moderate_tolerance * augmentations_.share_of_first_residual());
     return tolerance;
   }
 
@@ -161,10 +157,10 @@ class Search {
     std::optional<std::pair<State<Real>, std::vector<Real>>>
         best;  // since only rounding is left, during which a search may drift
     double least = INFINITY;
-    int augmentations = augmentations_;
+    int augmentations = augmentations_.count();
     result_.stagnated = result_.rounded = false;
     while (!arrived() || settle()) {
-      if (std::exchange(augmentations, augmentations_) != augmentations_) {
+      if (std::exchange(augmentations, augmentations_.count()) != augmentations_.count()) {
         stagnation = Stagnation(epsilon, amplification_);
         best.reset();
         least = INFINITY;
@@ -218,7 +214,7 @@ class Search {
         return true;
       }
       result_.stability = Stability::saddle_left;
-      augment_again();
+      augmentations_.restart();
       if (left == most_saddles || !equilibrium_.leave(softest.falling, left > 0) || (!search() && !ended_)) {
         throw ComputationError(
             fmt::format("the equilibrium found is unstable: the smallest eigenvalue of the current stiffness "
@@ -248,20 +244,12 @@ class Search {
   /// Augments contact near the equilibrium at the full load, only once before elements have chosen their
   /// levels; returns whether the search must continue.
   bool augment() {
-    if (!load_levels_.full() || augmented_ || (is_unsettled() && augmentations_ > 0)) return false;
-    const bool changed =
-        body().augment_contact(augmentations_ == 0 ? Augmentation::first : Augmentation::further);
-    if (changed) ++augmentations_;
-    augmented_ = !changed || augmentations_ == augmentations_asked_;
-    if (!changed) return false;
-    equilibrium_.start(load_levels_.effort());
-    return true;
-  }
-
-  /// Augments contact from the start in the next search; returns how often it was augmented in the last one.
-  int augment_again() {
-    augmented_ = !equilibrium_.may_touch();
-    return std::exchange(augmentations_, 0);
+    if (!load_levels_.full() || augmentations_.done() || (is_unsettled() && augmentations_.count() > 0))
+      return false;
+    const bool changed = body().augment_contact(augmentations_.next());
+    augmentations_.augmented(changed);
+    if (changed) equilibrium_.start(load_levels_.effort());
+    return changed;
   }
 
   /// Whether the search may end: not with an inverted element, as another equilibrium may be near, and at the
@@ -293,7 +281,7 @@ class Search {
       if (!adaption_.active() || !std::exchange(settled_, true)) return adaption_.active();
       if (!adaption_.promote_for_the_whole(body())) return false;
     }
-    if (settled_) augment_again();
+    if (settled_) augmentations_.restart();
     equilibrium_.start(load_levels_.effort());
     return true;
   }
@@ -309,7 +297,9 @@ class Search {
   void finish_load_level() {
     result_.converged = load_levels_.full() && !result_.stagnated;
     ended_ = load_levels_.full() || equilibrium_.evaluations() >= most_evaluations_;
-    add_work();
+    driving_.move(load_levels_.moved());
+    driving_.add_work();
+    body().add_work_of_loads();
     report();
     if (ended_) return;
     observer_.frame(frame_of(body(), load_levels_.travelled(), no_velocity_));
@@ -327,8 +317,8 @@ class Search {
     const State<Real> failed = body().state();
     const Touch through = std::exchange(through_, {});
     body().augment_contact(Augmentation::none);
-    if (augment_again() > 1 && through.passed < 0) {
-      augmentations_asked_ = 1;
+    if (augmentations_.restart() > 1 && through.passed < 0) {
+      augmentations_.limit_to_one();
       return load_levels_.restart(body());
     }
     if (load_levels_.failed(body())) return;
@@ -370,25 +360,11 @@ class Search {
     ended_ = ended_ || result_.interrupted;
   }
 
-  /// Adds the work of imposed displacements and forces over a load level, from the mean of the forces at its
-  /// ends.
-  void add_work() {
-    const auto& constraints = model_.scene().constraints;
-    const auto moved = load_levels_.moved();
-    const std::vector<double> forces = body().constraints().of_all(body().reactions());
-    for (std::size_t k = 0; k < constraints.size(); ++k) {
-      const ImposedPath& path = constraints[k].path;
-      work_ += 0.5 * (reactions_[k] + forces[k]) * path.along(moved[path.angle]);
-    }
-    reactions_ = forces;
-    body().add_work_of_loads();
-  }
-
   void report() {
     const StrainEnergies energies = body().energies();
     const Touch touch = body().touch();
     observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
-                       energies.hourglass, work_ + body().work_of_loads(), equilibrium_.residual(),
+                       energies.hourglass, body().work_of_loads() + driving_.work(), equilibrium_.residual(),
                        load_levels_.increment(), 0.0, body().reactions_of_sets(), touch.stored,
                        touch.dissipated, touch.depth, body().moments_of_obstacles()});
   }
@@ -404,16 +380,13 @@ class Search {
   LoadLevels<Real> load_levels_;
   NodalField no_velocity_;
   Relaxation result_;
-  std::vector<double> reactions_;
-  double work_ = 0.0;
-  long first_evaluation_ = 0;                     // of this load level
-  long next_check_;                               // evaluations
-  bool lowered_ = false;                          // whether elements could be demoted at the full load
-  bool settled_ = false;                          // whether levels no longer changed at a moderate residual
-  int augmentations_ = 0;                         // of contact, at this load level
-  int augmentations_asked_ = most_augmentations;  // one, if none is found without depth, as in grooves
-  bool augmented_;                                // whether contact need not be augmented further
-  Touch through_;                                 // how a node touched that passed through in this load level
+  DrivingForces<Real> driving_;
+  long first_evaluation_ = 0;           // of this load level
+  long next_check_;                     // evaluations
+  bool lowered_ = false;                // whether elements could be demoted at the full load
+  bool settled_ = false;                // whether levels no longer changed at a moderate residual
+  AugmentationSchedule augmentations_;  // of contact, at this load level
+  Touch through_;                       // how a node touched that passed through in this load level
   bool ended_ = false;
 };
 
