@@ -252,7 +252,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
                        std::vector<Defects>& defects) const {
     for_each_pack(*layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
       const int* const elements = layout_->elements.data() + at.pack * width;
-      const auto axes = axes_of_block<Number>(this->axes_, elements);
+      const auto axes = axes_of_block<Number>(this->plans_.axes(), elements);
       const auto squares = squared_defects(u, mobility, at.face, at.material, axes ? &*axes : nullptr);
       for (int lane = 0; lane < width; ++lane) {
         if (elements[lane] < 0) continue;
@@ -300,7 +300,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   Modes<Number> force_at(const ElementMotion<Number>& motion, const Modes<Number>& x, std::size_t material,
                          const MaterialAxes<Number>* axes) const {
     const Law& law = laws_[material];
-    const auto element = Kernel::template constants<Number>(x, law, this->setups_[material].settings);
+    const auto element = Kernel::template constants<Number>(x, law, this->plans_.setup_of(material).settings);
     typename Kernel::template History<Number> none;
     return Kernel::force(Kernel::deformation(motion, element), element, none, with_axes(law, axes));
   }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "assembly/chunk_sum.hpp"
-#include "assembly/element_block.hpp"
+#include "assembly/element_plans.hpp"
 #include "assembly/face_motion.hpp"
 #include "assembly/internal_force.hpp"
 #include "assembly/strip_walk.hpp"
@@ -20,7 +20,6 @@
 #include "base/type_list.hpp"
 #include "element/method_traits.hpp"
 #include "element/replaced_pressure.hpp"
-#include "mesh/node_elements.hpp"
 
 namespace sandglass {
 
@@ -52,21 +51,9 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
   template <class Method>
   using Part = ElementPart<Method, Number>;
-
-  /// What the constants of an element depend on besides its shape.
-  struct Setup {
-    CalledLaw law;
-    HourglassSettings settings;
-  };
-
-  /// One part for each level.
-  using Parts = std::tuple<Part<Methods>...>;
-
-  /// Chunks are immutable: plans share those whose elements have the same levels.
-  struct Plan final : ElementLevels {
-    std::vector<std::size_t> levels;  // of each element; empty if there is only one
-    std::vector<std::shared_ptr<const Parts>> chunks;
-  };
+  using Plans = ElementPlans<TypeList<Methods...>, Number>;
+  using Plan = typename Plans::Plan;
+  using Parts = typename Plans::Parts;
 
  public:
   LevelledElements(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
@@ -74,26 +61,11 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       : layout_(std::make_shared<Layout>(make_layout(mesh, width,
                                                      adapts ? SpareRows::everywhere : SpareRows::where_needed,
                                                      materials.of_element, team))),
-        axes_(materials.axes),
+        plans_(mesh, materials, settings, layout_),
         alike_(numbers_of_alike(materials)) {
-    for (const Material& material : materials.list) {
-      setups_.push_back({elastic_law(kernel_law(material)), settings});
-      setups_.back().settings.density = material.density;
-    }
     if constexpr (uses_coordinates || adapts) {
       coordinates_ = centred_coordinates<Real>(mesh.points, *layout_);
     }
-    auto plan = std::make_shared<Plan>();
-    if constexpr (adapts) {
-      regrouping_ = std::make_unique<const Regrouping>(mesh, *layout_);
-      plan = plan_at(std::vector<std::size_t>(mesh.cells.size()), nullptr);
-    } else {
-      plan->chunks.resize(layout_->chunks.size());
-      for (std::size_t c = layout_->local_chunks.first; c < layout_->local_chunks.last; ++c) {
-        plan->chunks[c] = only_part(mesh, layout_->chunks[c]);
-      }
-    }
-    undeformed_plan_ = std::move(plan);
     constexpr std::size_t cached_bytes = std::size_t{2} << 20U;  // that a core may keep in its own caches
     using Cheapest = typename std::tuple_element_t<0, Parts>::Element;
     streams_ = layout_->packs() * sizeof(Cheapest) > cached_bytes;
@@ -106,7 +78,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     State<Real> state;
     state.u.resize(layout_->rows());
     state.increment.resize(layout_->rows());
-    state.levels = undeformed_plan_;
+    state.levels = plans_.undeformed();
     return state;
   }
 
@@ -158,10 +130,10 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
   /// Gives the elements new levels.
   void regroup(State<Real>& state, std::vector<std::size_t> levels) const {
-    state.levels = plan_at(std::move(levels), &plan_of(state));
+    state.levels = plans_.at_levels(std::move(levels), plan_of(state));
   }
 
-  const std::vector<std::vector<int>>& elements_of_chunks() const { return regrouping_->elements; }
+  const std::vector<std::vector<int>>& elements_of_chunks() const { return plans_.elements_of_chunks(); }
 
   using FaceMotion = sandglass::FaceMotion<Number>;
 
@@ -248,88 +220,13 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  std::shared_ptr<const Layout> layout_;    // of all elements
-  std::vector<MaterialAxes<double>> axes_;  // of each element; empty: those of space
-  std::vector<Setup> setups_;               // of each material
-  std::vector<std::size_t> alike_;          // see numbers_of_alike
-  Rows<Real> coordinates_;                  // only if kernels need them, or adaptive methods
-  bool streams_ = false;                    // whether constants do not remain in the cache from step to step
+  std::shared_ptr<const Layout> layout_;  // of all elements
+  Plans plans_;
+  std::vector<std::size_t> alike_;  // see numbers_of_alike
+  Rows<Real> coordinates_;          // only if kernels need them, or adaptive methods
+  bool streams_ = false;            // whether constants do not remain in the cache from step to step
 
  private:
-  /// The data needed for changing the levels of elements.
-  struct Regrouping {
-    Regrouping(const Mesh& body, const Layout& layout) : mesh(body), neighbours(body) {
-      for (const auto& chunk : layout.chunks) elements.push_back(layout.elements_of(chunk));
-    }
-
-    Mesh mesh;
-    NodeElements neighbours;
-    std::vector<std::vector<int>> elements;  // of each chunk
-  };
-
-  /// All elements of a chunk, in the groups of the layout.
-  std::shared_ptr<const Parts> only_part(const Mesh& mesh, const Layout::Chunk& chunk) const {
-    auto parts = std::make_shared<Parts>();
-    auto& part = std::get<0>(*parts);
-    part.groups = layout_;
-    part.first = chunk.first;
-    part.last = chunk.last;
-    if (chunk.first < chunk.last) part.first_block = layout_->groups[chunk.first].first_pack;
-    fill_blocks(part, mesh);
-    return parts;
-  }
-
-  std::shared_ptr<Plan> plan_at(std::vector<std::size_t> levels, const Plan* before) const {
-    auto plan = std::make_shared<Plan>();
-    plan->levels = std::move(levels);
-    plan->chunks.resize(layout_->chunks.size());
-    for (std::size_t c = layout_->local_chunks.first; c < layout_->local_chunks.last; ++c) {
-      const auto& elements = elements_of_chunks()[c];
-      const bool same = before != nullptr && std::all_of(elements.begin(), elements.end(), [&](int e) {
-                          const auto n = static_cast<std::size_t>(e);
-                          return before->levels[n] == plan->levels[n];
-                        });
-      plan->chunks[c] = same ? before->chunks[c] : parts_at(c, plan->levels);
-    }
-    return plan;
-  }
-
-  /// The elements of a chunk, grouped by their levels.
-  std::shared_ptr<const Parts> parts_at(std::size_t c, const std::vector<std::size_t>& levels) const {
-    auto parts = std::make_shared<Parts>();
-    std::size_t level = 0;
-    const auto fill = [&](auto& part) {
-      std::vector<int> chosen;
-      std::copy_if(elements_of_chunks()[c].begin(), elements_of_chunks()[c].end(), std::back_inserter(chosen),
-                   [&](int e) { return levels[static_cast<std::size_t>(e)] == level; });
-      part.groups = std::make_shared<ElementGroups>(
-          groups_within(*layout_, layout_->chunks[c], regrouping_->mesh, regrouping_->neighbours, chosen));
-      part.last = part.groups->groups.size();
-      fill_blocks(part, regrouping_->mesh);
-      ++level;
-    };
-    std::apply([&](auto&... part) { (fill(part), ...); }, *parts);
-    return parts;
-  }
-
-  template <class Method>
-  void fill_blocks(Part<Method>& part, const Mesh& mesh) const {
-    for (std::size_t g = part.first; g < part.last; ++g) {
-      const auto& group = part.groups->groups[g];
-      const Setup& setup = setups_[group.material];
-      for (std::size_t k = 0; k < group.packs; ++k) {
-        const int* elements = part.groups->elements.data() + (group.first_pack + k) * width;
-        const auto law_of = [&](int lane) {
-          const bool own = !axes_.empty() && elements[lane] >= 0;
-          return setup.law.with_axes(own ? &axes_[static_cast<std::size_t>(elements[lane])] : nullptr);
-        };
-        part.blocks.push_back(element_block<KernelOf<Method>, Number>(
-            mesh, *part.groups, layout_->node_of_row, group.first_face + k, law_of, setup.settings));
-        if (const auto axes = axes_of_block<Number>(axes_, elements)) part.axes.push_back(*axes);
-      }
-    }
-  }
-
   /// Adds the nodal volumes of a part's elements of materials with a number, in the order of the forces.
   template <class Method>
   SANDGLASS_HOT_LOOP void add_volumes(const Part<Method>& part, const State<Real>& state, std::size_t alike,
@@ -377,7 +274,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
           part.for_each_lane(at.pack, [&](std::size_t e, int lane) { Lanes<Number>::set(own, lane, p[e]); });
           const auto replaced = replace_pressure<Method>(
               motion_between<KernelOf<Method>>(lower, upper, inverse_step), part.block(at.pack).body, own,
-              Number(lambda), Number(Real(1) / lambda), setups_[at.material].law);
+              Number(lambda), Number(Real(1) / lambda), plans_.setup_of(at.material).law);
           part.for_each_lane(at.pack, [&](std::size_t e, int lane) {
             defect[e] = Lanes<Number>::get(replaced.defect, lane);
           });
@@ -412,9 +309,6 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
                 {at, chunk, part.axes_at(at.pack), part.groups.get()});
         });
   }
-
-  std::unique_ptr<const Regrouping> regrouping_;  // of methods that adapt
-  std::shared_ptr<const Plan> undeformed_plan_;
 };
 
 }  // namespace sandglass
