@@ -36,11 +36,16 @@ double product(std::span<const double> a, std::span<const double> b) {
 /// above roundoff.
 std::vector<Coefficients> null_space(const std::vector<Coefficients>& rows, std::size_t n) {
   std::vector<double> products(n * n);
-  for (const Coefficients& row : rows) {
-    for (std::size_t i = 0; i < n; ++i) {
-      if (row[i] == 0.0) continue;
-      for (std::size_t j = 0; j < n; ++j) products[i * n + j] += row[i] * row[j];
+  constexpr std::size_t block = 512;  // long sums would round more
+  for (std::size_t first = 0; first < rows.size(); first += block) {
+    std::vector<double> sums(n * n);
+    for (std::size_t k = first; k < std::min(first + block, rows.size()); ++k) {
+      for (std::size_t i = 0; i < n; ++i) {
+        if (rows[k][i] == 0.0) continue;
+        for (std::size_t j = 0; j < n; ++j) sums[i * n + j] += rows[k][i] * rows[k][j];
+      }
     }
+    for (std::size_t k = 0; k < products.size(); ++k) products[k] += sums[k];
   }
   const Eigenpairs pairs = symmetric_eigenpairs(products);
   const double most = tolerance * tolerance * static_cast<double>(rows.size());

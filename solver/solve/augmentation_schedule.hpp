@@ -7,7 +7,7 @@
 
 namespace sandglass {
 
-/// When a search for equilibrium augments contact: a few times, each at a residual of this share of the last.
+/// When a search for equilibrium augments contact: three times, each at a tenth of the previous residual.
 /// Nodes then sink into obstacles by 1e-6 of an edge, and the depth at the first residual no longer
 /// influences the answer.
 class AugmentationSchedule {

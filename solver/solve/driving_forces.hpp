@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -23,7 +24,7 @@ class DrivingForces {
         moved_(model.scene().angles.size()),
         accelerations_(moved_.size()) {}
 
-  /// Those of each constraint, and their works (J) since the start.
+  /// Those of each constraint, and their works (J) since the start; of this rank's own constraints.
   std::vector<double>& forces() { return forces_; }
   std::vector<double>& works() { return works_; }
 
@@ -50,8 +51,11 @@ class DrivingForces {
     }
   }
 
-  /// The same between two states at rest.
-  void move(std::vector<PathTerms> moved) { moved_ = std::move(moved); }
+  /// The same between two states of static equilibrium, with these changes of the terms.
+  void move(std::vector<PathTerms> moved) {
+    moved_ = std::move(moved);
+    std::ranges::fill(accelerations_, PathTerms{});
+  }
 
   /// The changes of the terms of each angle's paths over the last step, and their accelerations (1/s^2).
   const std::vector<PathTerms>& moved() const { return moved_; }
