@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 
 #include "assembly/levelled_elements.hpp"
 #include "base/hot_loop.hpp"
@@ -110,14 +111,18 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   }
 
   void powers(const State<Real>& state, const Rows<Real>& v, std::span<double> powers) const override {
-    const auto laws = laws_at(state.step);
-    this->per_element(
-        state, powers, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
-          return power<Method>(motion, element, history<Method>(state, at.pack),
-                               with_axes(laws[at.material], at.axes),
-                               nodes_of(gather_face_vectors<Number>(v, *at.groups, at.face),
-                                        gather_face_vectors<Number>(v, *at.groups, at.face + 1)));
-        });
+    if constexpr (std::is_same_v<Real, double>) {
+      const auto laws = laws_at(state.step);
+      this->per_element(
+          state, powers, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
+            return power<Method>(motion, element, history<Method>(state, at.pack),
+                                 with_axes(laws[at.material], at.axes),
+                                 nodes_of(gather_face_vectors<Number>(v, *at.groups, at.face),
+                                          gather_face_vectors<Number>(v, *at.groups, at.face + 1)));
+          });
+    } else {
+      throw std::logic_error("powers of elements are computed in double precision");
+    }
   }
 
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {

@@ -63,7 +63,8 @@ class ElementFields {
   virtual void stresses(const State<Real>& state, const Rows<Real>& coordinates,
                         std::span<double> stresses) const = 0;
 
-  /// The power (W) of each element's forces at nodal velocities v (m/s): their scalar product.
+  /// The power (W) of each element's forces at nodal velocities v (m/s): their scalar product. In double
+  /// precision, as derivatives are; throws std::logic_error in any other.
   virtual void powers(const State<Real>& state, const Rows<Real>& v, std::span<double> powers) const = 0;
 
   /// Upper bounds of the largest eigenvalue (N/m) of the tangent stiffness.

@@ -46,22 +46,20 @@ void walk_strips(const ElementGroups& groups, std::size_t first, std::size_t las
   }
 }
 
-/// The contribution of a walk that only reads.
-struct Nothing {
-  friend Nothing operator+(Nothing, Nothing) { return {}; }
-};
-
-/// The same walk without contributions: compute returns nothing.
+/// The same walk without contributions: compute returns nothing. It runs less often, so that its code is kept
+/// small: `gather`, which is inlined, is called at one place.
 template <class Gather, class Compute>
 void walk_strips(const ElementGroups& groups, std::size_t first, std::size_t last, const Gather& gather,
                  const Compute& compute) {
-  walk_strips(
-      groups, first, last, gather,
-      [&](const auto& lower, const auto& upper, const StripPlace& place) {
-        compute(lower, upper, place);
-        return FacePair<Nothing>{};
-      },
-      [](Nothing, std::size_t) {});
+  for (std::size_t g = first; g < last; ++g) {
+    const auto [first_pack, first_face, packs, material] = groups.groups[g];
+    decltype(gather(first_face, material)) lower{};
+    for (std::size_t k = 0; k <= packs; ++k) {
+      const auto upper = gather(first_face + k, material);
+      if (k > 0) compute(lower, upper, StripPlace{first_pack + k - 1, first_face + k - 1, material});
+      lower = upper;
+    }
+  }
 }
 
 }  // namespace sandglass
