@@ -1,20 +1,16 @@
-/// The order of nodes and elements in the time loop, and independence of results from the number of threads,
-/// the width of the kernel and the precision.
+/// Independence of results from the number of threads, the width of the kernel and the precision.
 
 #include <gtest/gtest.h>
 
-#include <set>
 #include <tuple>
 
-#include "assembly/strips.hpp"
 #include "base/error.hpp"
 #include "element/methods.hpp"
 #include "math/pack.hpp"
-#include "mesh/generators.hpp"
 #include "mesh/quality.hpp"
 #include "solve/central_difference.hpp"
+#include "support/mesh_kinds.hpp"
 #include "support/method_test.hpp"
-#include "support/patch_mesh.hpp"
 #include "support/path.hpp"
 #include "support/random_hexahedra.hpp"
 
@@ -22,47 +18,6 @@ namespace sandglass::verification::assembly_test {
 namespace {
 
 const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.49};
-
-/// A ring of hexahedra: a strip that closes on itself.
-Mesh ring(int n) {
-  Mesh mesh;
-  for (int k = 0; k < n; ++k) {
-    const double angle = 2.0 * std::acos(-1.0) * k / n;
-    for (const auto& [r, z] : {std::pair{1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}}) {
-      mesh.points.push_back({r * std::cos(angle), r * std::sin(angle), z});
-    }
-  }
-  for (int k = 0; k < n; ++k) {
-    const int a = 4 * k, b = 4 * ((k + 1) % n);
-    mesh.cells.push_back({a, b, b + 1, a + 1, a + 3, b + 3, b + 2, a + 2});
-  }
-  for (auto& cell : mesh.cells) {
-    NodalVectors<double> X = gather(mesh.points, cell);
-    if (mean_gradient(X).volume < 0.0)
-      cell = {cell[4], cell[5], cell[6], cell[7], cell[0], cell[1], cell[2], cell[3]};
-  }
-  return mesh;
-}
-
-/// A box whose edges are not at right angles, so that no entry of the mean gradients is zero.
-Mesh sheared_box() {
-  Mesh mesh = box({2, 3, 4}, {4, 5, 9});
-  for (auto& [x, y, z] : mesh.points)
-    std::tie(x, y, z) = std::tuple(x + 0.3 * y - 0.2 * z, y + 0.4 * x, z - 0.3 * y);
-  return mesh;
-}
-
-/// Meshes of all kinds whose elements the method accepts.
-std::vector<Mesh> meshes(std::string_view method = "tl-perturbation") {
-  return {box({1, 1, 1}, {1, 1, 1}),
-          box({1, 2, 9}, {3, 4, 30}),
-          box({3, 2, 2.5}, {13, 11, 12}),
-          sheared_box(),
-          fitting_patch(method),
-          ring(40),
-          EllipsoidMesh{{0.10, 0.085, 0.08}, 6, 2}.build(),
-          CylinderMesh{.radius = 0.05, .height = 0.1, .core_elements = 4, .rings = 3, .layers = 9}.build()};
-}
 
 /// A displacement field that is not linear in any element, at most a tenth of a small element, and less where
 /// that would invert an element of the method.
@@ -82,80 +37,6 @@ NodalField wavy(const Mesh& mesh, const std::string& method) {
       for (double& x : row) x *= 0.5;
     }
   }
-}
-
-/// Each element occurs once, between two faces that hold exactly its nodes, oriented so that its volume is
-/// positive; spare lanes hold none.
-TEST(LayoutTest, every_element_stands_once_between_its_faces) {
-  for (const Mesh& mesh : meshes()) {
-    for (const int width : {1, 2, 4, 8, 16}) {
-      const Layout layout = make_layout(mesh, width);
-      std::vector<int> met(mesh.cells.size(), 0);
-      for (const auto& group : layout.groups) {
-        for (std::size_t k = 0; k < group.packs; ++k) {
-          for (int lane = 0; lane < width; ++lane) {
-            const int e = layout.elements[(group.first_pack + k) * index(width) + index(lane)];
-            NodalVectors<double> X{};
-            std::set<int> nodes;
-            for (int I = 0; I < 8; ++I) {
-              const Place place = layout.places(group.first_face + k + index(I) / 4, index(I) % 4)[lane];
-              ASSERT_EQ(e < 0, place / 4 >= layout.nodes);
-              const int node = layout.node_of_row[place / 4];
-              nodes.insert(node);
-              for (int i = 0; i < 3; ++i) X(I, i) = mesh.points[index(node)][index(i)];
-            }
-            EXPECT_GT(mean_gradient(X).volume, 0.0);
-            if (e < 0) continue;
-            ++met[index(e)];
-            const Hexahedron& cell = mesh.cells[index(e)];
-            EXPECT_EQ(nodes, std::set<int>(cell.begin(), cell.end()));
-          }
-        }
-      }
-      EXPECT_EQ(met, std::vector<int>(mesh.cells.size(), 1));
-    }
-  }
-}
-
-TEST(LayoutTest, rows_and_nodes_are_a_permutation) {
-  for (const Mesh& mesh : meshes()) {
-    const Layout layout = make_layout(mesh, 8);
-    EXPECT_EQ(layout.nodes, mesh.points.size());
-    for (std::size_t n = 0; n < layout.nodes; ++n) {
-      EXPECT_EQ(layout.node_of_row[index(layout.row_of_node[n])], static_cast<int>(n));
-    }
-  }
-}
-
-/// Threads work on chunks of one parity at a time: they must share no row.
-TEST(LayoutTest, chunks_of_one_parity_share_no_row) {
-  for (const Mesh& mesh : meshes()) {
-    for (const int width : {1, 8, 16}) {
-      const Layout layout = make_layout(mesh, width);
-      for (const std::size_t parity : {0U, 1U}) {
-        std::vector<int> owner(layout.rows(), -1);
-        for (std::size_t c = parity; c < layout.chunks.size(); c += 2) {
-          for (std::size_t g = layout.chunks[c].first; g < layout.chunks[c].last; ++g) {
-            const auto& group = layout.groups[g];
-            for (std::size_t n = 0; n < 4 * index(width) * (group.packs + 1); ++n) {
-              int& by = owner[layout.places(group.first_face, 0)[n] / 4];
-              EXPECT_TRUE(by == -1 || by == static_cast<int>(c));
-              by = static_cast<int>(c);
-            }
-          }
-        }
-      }
-    }
-  }
-}
-
-/// Strips pay only if they are long: in a box they run from side to side of a chunk.
-TEST(LayoutTest, strips_of_a_box_are_long_and_lanes_are_filled) {
-  const Layout layout = make_layout(box({3, 2, 2.5}, {24, 16, 20}), 8);
-  std::size_t packs = 0;
-  for (const auto& group : layout.groups) packs += group.packs;
-  EXPECT_GE(packs / layout.groups.size(), 8U);
-  EXPECT_LT(layout.packs() * 8, 24U * 16U * 20U * 101 / 100);
 }
 
 class AssemblyTest : public MethodTest {};

@@ -195,8 +195,8 @@ TEST_F(DeviceSimulation, returns_to_its_last_sound_state) {
 }
 
 /// The head is pressed so fast that elements turn inside out before a check, but not with shorter steps, as
-/// in simulation_test.cpp. Such a motion amplifies rounding; another path, or steps from an unsound state,
-/// would change the first digits.
+/// in simulation_failure_test.cpp. Such a motion amplifies rounding; another path, or steps from an unsound
+/// state, would change the first digits.
 TEST_F(DeviceSimulation, takes_steps_that_prove_too_long_again) {
   const auto pressed = [](const std::string& device) {
     Simulation<double> simulation(block(), text_with(),

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.hpp"
+#include "solve/health.hpp"
 #include "solve/relaxation.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace sandglass::verification::finding_test {
 namespace {
@@ -57,6 +60,35 @@ TEST(HourglassContent, linear_fields_have_none_on_distorted_elements) {
     EXPECT_LT(content.hourglass, 256 * eps * largest_entry(X) * (1 + largest_entry(X)));
     EXPECT_GT(content.total, 0.0);
   }
+}
+
+TEST(Outcome, says_that_elements_are_inverted) {
+  Relaxation answer;
+  answer.steps = 7;
+  EXPECT_EQ(outcome(answer, Precision::double_precision), "no equilibrium after 7 evaluations");
+  answer.inverted = true;
+  EXPECT_EQ(outcome(answer, Precision::double_precision),
+            "no equilibrium after 7 evaluations, and elements are inverted");
+}
+
+/// A NaN volume is neither positive nor negative; it must not count as healthy.
+TEST(Health, not_a_number_is_distinguished_from_inverted_elements) {
+  const auto breakdown_of = [](const std::vector<double>& jacobians) -> std::optional<Breakdown> {
+    try {
+      require_healthy(jacobians, 7);
+    } catch (const ComputationError& error) {
+      EXPECT_TRUE(contains(error.what(), "step 7: 1 of 3 elements"));
+      EXPECT_TRUE(contains(error.what(), "element 1: "));
+      return error.breakdown();
+    }
+    return std::nullopt;
+  };
+  EXPECT_EQ(breakdown_of({1.0, 1e-300, 2.0}), std::nullopt);
+  EXPECT_EQ(breakdown_of({1.0, 0.0, 2.0}), Breakdown::inverted);
+  EXPECT_EQ(breakdown_of({1.0, -0.1, 2.0}), Breakdown::inverted);
+  EXPECT_EQ(breakdown_of({1.0, std::nan(""), 2.0}), Breakdown::not_finite);
+  EXPECT_EQ(breakdown_of({1.0, -INFINITY, 2.0}), Breakdown::not_finite);
+  EXPECT_EQ(breakdown_of({1.0, INFINITY, 2.0}), Breakdown::not_finite);
 }
 
 TEST(GoodLimit, is_one_percent_or_what_the_golden_is_worth) {

@@ -4,7 +4,6 @@
 
 #include "base/error.hpp"
 #include "solve/central_difference.hpp"
-#include "solve/health.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
 #include "support/method_test.hpp"
@@ -172,15 +171,6 @@ TEST_P(StepperTest, stagnation_in_double_precision_is_not_called_rest) {
   EXPECT_TRUE(contains(outcome(answer, Precision::double_precision), "no equilibrium"));
 }
 
-TEST(Outcome, says_that_elements_are_inverted) {
-  Relaxation answer;
-  answer.steps = 7;
-  EXPECT_EQ(outcome(answer, Precision::double_precision), "no equilibrium after 7 evaluations");
-  answer.inverted = true;
-  EXPECT_EQ(outcome(answer, Precision::double_precision),
-            "no equilibrium after 7 evaluations, and elements are inverted");
-}
-
 /// The residual must fall below the tolerance, not just reach it. If the tolerance is the residual of an
 /// answer, the search is the same, bit by bit, and must continue from there.
 TEST_P(StepperTest, residual_at_the_tolerance_is_not_yet_rest) {
@@ -270,26 +260,6 @@ TEST_P(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
   } catch (const ComputationError& error) {
     expect_helpful(error.what());
   }
-}
-
-/// A NaN volume is neither positive nor negative; it must not count as healthy.
-TEST(Health, not_a_number_is_distinguished_from_inverted_elements) {
-  const auto breakdown_of = [](const std::vector<double>& jacobians) -> std::optional<Breakdown> {
-    try {
-      require_healthy(jacobians, 7);
-    } catch (const ComputationError& error) {
-      EXPECT_TRUE(contains(error.what(), "step 7: 1 of 3 elements"));
-      EXPECT_TRUE(contains(error.what(), "element 1: "));
-      return error.breakdown();
-    }
-    return std::nullopt;
-  };
-  EXPECT_EQ(breakdown_of({1.0, 1e-300, 2.0}), std::nullopt);
-  EXPECT_EQ(breakdown_of({1.0, 0.0, 2.0}), Breakdown::inverted);
-  EXPECT_EQ(breakdown_of({1.0, -0.1, 2.0}), Breakdown::inverted);
-  EXPECT_EQ(breakdown_of({1.0, std::nan(""), 2.0}), Breakdown::not_finite);
-  EXPECT_EQ(breakdown_of({1.0, -INFINITY, 2.0}), Breakdown::not_finite);
-  EXPECT_EQ(breakdown_of({1.0, INFINITY, 2.0}), Breakdown::not_finite);
 }
 
 TEST_P(StepperTest, an_observer_may_end_the_run) {

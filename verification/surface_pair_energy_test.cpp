@@ -1,17 +1,60 @@
-/// Bodies that slide on each other, meet at edges and collide at random: no energy is gained, momentum is
-/// kept, and nothing passes through without an error.
+/// Forces of contact as derivatives of its energy. Bodies that slide on each other, meet at edges and collide
+/// at random: no energy is gained, momentum is kept, and nothing passes through without an error.
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "base/error.hpp"
+#include "forces/contact_force.hpp"
 #include "forces/contact_input.hpp"
 #include "solve/central_difference.hpp"
 #include "support/momentum.hpp"
+#include "support/random_hexahedra.hpp"
 #include "support/random_scene.hpp"
 #include "support/two_bodies.hpp"
 
 namespace sandglass::verification::surface_pair_energy_test {
 namespace {
+
+/// Without friction, forces are minus the derivative of the stored energy, at random displacements of the
+/// nodes that touch. Central differences err by the third derivative: 1e-6 of the largest force.
+TEST(SurfacePair, has_the_forces_of_its_energy) {
+  TwoBodies bodies(box({1.0, 1.0, 0.5}, {3, 3, 1}), moved(box({1.2, 1.2, 0.5}, {4, 4, 1}), {0.0, 0.1, 0.5}),
+                   NeoHookean{.young_modulus = 1e4, .poisson_ratio = 0.3});
+  bodies.description.forces.of<Contact>() = {pair_of("under", "over", Contact::Method::penalty)};
+  const Scene scene = bodies.scene();
+  const auto* contact = contacts_of(scene.forces).front();
+  std::vector<int> places(scene.mesh.points.size());
+  std::iota(places.begin(), places.end(), 0);
+  RandomGeometry random(5);
+  Rows<double> u(places.size()), forces(places.size());
+  const std::vector<double> factors(scene.curves.size(), 1.0);
+  for (const int node : scene.sets.at("over"))
+    u[at(node)] = {{random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), random.uniform(-0.06, 0.0)}};
+  const auto energy = [&](AtNodes<Row<double>> sums) {
+    std::vector<Row<double>> memory(contact->memory());
+    contact->add_contact(factors, NodalRows(u.data(), places), memory.data(), sums);
+    return contact->touch(memory.data()).stored;
+  };
+  EXPECT_GT(energy({forces.data(), places}), 0.0);
+  double largest = 0.0;
+  for (const Row<double>& force : forces) largest = std::max(largest, std::abs(force[2]));
+  Rows<double> ignored(places.size());
+  constexpr double step = 1e-6;
+  for (const int node : contact->nodes()) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      double& one = u[at(node)][i];
+      const double here = one;
+      one = here + step;
+      const double above = energy({ignored.data(), places});
+      one = here - step;
+      const double below = energy({ignored.data(), places});
+      one = here;
+      EXPECT_NEAR(forces[at(node)][i], -(above - below) / (2.0 * step), 1e-6 * largest) << node << " " << i;
+    }
+  }
+}
 
 /// The largest energy (J) beyond what there was at the start and loads worked, and the largest energy.
 struct Gain {

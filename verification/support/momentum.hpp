@@ -18,4 +18,16 @@ struct Momentum {
   }
 };
 
+/// The sum of m u over m.
+inline Vector centre_of(const NodalField& field, const std::vector<double>& masses) {
+  Vector sum_of_all{};
+  double mass = 0.0;
+  for (std::size_t n = 0; n < field.size(); ++n) {
+    mass += masses[n];
+    for (std::size_t i = 0; i < 3; ++i) sum_of_all[i] += masses[n] * field[n][i];
+  }
+  for (double& x : sum_of_all) x /= mass;
+  return sum_of_all;
+}
+
 }  // namespace sandglass::verification
