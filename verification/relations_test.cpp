@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "io/case_file.hpp"
+#include "mesh/edges.hpp"
 #include "sandglass/batch.hpp"
 #include "support/mechanics.hpp"
 #include "support/random_problem.hpp"

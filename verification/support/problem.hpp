@@ -55,16 +55,6 @@ void multiply(Numbers& numbers, double factor) {
   for (double& number : numbers) number *= factor;
 }
 
-/// The shortest among the edges at the first corners of elements, m.
-inline double shortest_edge(const Mesh& mesh) {
-  double shortest = INFINITY;
-  for (const Hexahedron& cell : mesh.cells) {
-    for (const std::size_t neighbour : {1U, 3U, 4U})
-      shortest = std::min(shortest, distance(mesh.points[at(cell[0])], mesh.points[at(cell[neighbour])]));
-  }
-  return shortest;
-}
-
 /// The largest length in a nodal field.
 inline double largest_in(const NodalField& field) {
   return largest_distance(field, NodalField(field.size()));

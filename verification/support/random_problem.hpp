@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "mesh/edges.hpp"
 #include "mesh/generators.hpp"
 #include "mesh/quality.hpp"
 #include "solve/stable_step.hpp"
