@@ -69,7 +69,22 @@ TEST(Formula, mistakes_are_named_with_their_position) {
             std::string::npos);
   const auto until_one = parse_formula("sqrt(1 - t)");
   EXPECT_EQ(until_one(0.75), 0.5);
-  EXPECT_THROW(until_one(1.5), InputError);
+  EXPECT_EQ(input_error([&] { until_one(1.5); }),
+            "formula = 'sqrt(1 - t)' is not a number at t = 1.5; it must be finite");
+}
+
+// A formula can be wrong later than at the start, when the reader of the file is gone.
+TEST(Formula, values_that_are_not_finite_are_named_with_their_place_in_the_file) {
+  const TemporaryFolder folder;
+  for (const auto& [text, is] :
+       {std::pair("1 / (t - 0.5)", "infinite"), std::pair("log(0.4 - t)", "not a number")}) {
+    const Case description = hanging(folder, fmt::format("formula = \"{}\"\n", text));
+    const std::string said = input_error([&] { description.forces.of<Gravity>()[0].curve.at(0.5, 0.0); });
+    EXPECT_NE(said.find("hanging.toml:"), std::string::npos) << said;
+    const std::string rule =
+        fmt::format("gravity.formula = '{}' is {} at t = 0.5; it must be finite", text, is);
+    EXPECT_NE(said.find(rule), std::string::npos) << said;
+  }
 }
 
 TEST(Formula, is_a_curve_like_a_table) {

@@ -78,10 +78,6 @@ struct Parser {
   }
 };
 
-[[noreturn]] void refuse(const std::string& what, std::size_t position) {
-  throw InputError(fmt::format("{} at position {}; {}", what, position + 1, formula_language()));
-}
-
 }  // namespace
 
 std::string formula_language() {
@@ -91,18 +87,22 @@ std::string formula_language() {
          names + "max, min";
 }
 
-std::function<double(double)> parse_formula(const std::string& text) {
+std::function<double(double)> parse_formula(const std::string& text, const std::string& name) {
+  const std::string given = fmt::format("{} = '{}'", name, text);
+  const auto refuse = [&](const std::string& what, std::size_t position) {
+    throw InputError(fmt::format("{}: {} at position {}; {}", given, what, position + 1, formula_language()));
+  };
   const std::size_t power = text.find("**");
   if (power != std::string::npos) refuse("a power is written ^, not '**'", power);
   const std::size_t strange =
       text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-*/^(), ");
   if (strange != std::string::npos) refuse(fmt::format("'{}'", text[strange]), strange);
   const auto formula = std::make_shared<Parser>(text);
-  const auto value_at = [formula](double time) {
+  const auto value_at = [formula, given](double time) {
     const double value = formula->at(time);
     if (std::isfinite(value)) return value;
-    throw InputError(
-        fmt::format("formula = '{}' is {} at t = {}; it must be finite", formula->text, value, time));
+    throw InputError(fmt::format("{} is {} at t = {}; it must be finite", given,
+                                 std::isnan(value) ? "not a number" : "infinite", time));
   };
   try {
     value_at(0.0);

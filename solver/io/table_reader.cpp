@@ -58,10 +58,14 @@ std::string TableReader::name_of(const std::string& key) const {
   return prefix_.empty() ? key : prefix_ + "." + key;
 }
 
-void TableReader::fail(const std::string& key, const std::string& message) const {
+std::string TableReader::place_of(const std::string& key) const {
   const toml::node* node = table_.get(key);
   const auto line = node != nullptr ? node->source().begin.line : table_.source().begin.line;
-  throw InputError(fmt::format("{}:{}: {} {}", file_.string(), line, name_of(key), message));
+  return fmt::format("{}:{}: {}", file_.string(), line, name_of(key));
+}
+
+void TableReader::fail(const std::string& key, const std::string& message) const {
+  throw InputError(place_of(key) + " " + message);
 }
 
 void TableReader::fail_missing(const std::string& key) const {

@@ -115,6 +115,7 @@ class TableReader {
   [[noreturn]] void fail_type(const std::string& key, const toml::node& node,
                               std::string_view expected) const;
   std::string name_of(const std::string& key) const;
+  std::string place_of(const std::string& key) const;  // "file:line: prefix.key"
 
   template <class T>
   T convert(const toml::node& node, const std::string& key) const;
@@ -143,13 +144,7 @@ class TableReader {
       const std::string word = required_choice(key, {words.begin(), words.end()});
       value = static_cast<Value>(std::find(words.begin(), words.end(), word) - words.begin());
     } else if constexpr (std::is_same_v<Value, Formula>) {
-      const auto text = optional<std::string>(key);
-      if (!text) return;
-      try {
-        value = Formula(*text);
-      } catch (const InputError& error) {
-        fail(key, fmt::format("= '{}': {}", *text, error.what()));
-      }
+      if (const auto text = optional<std::string>(key)) value = Formula(*text, place_of(key));
     } else if (auto given = parameter.required ? required<Value>(key) : optional<Value>(key)) {
       if constexpr (!std::is_same_v<Value, bool> && !std::is_same_v<Value, std::string>)
         require_in_range(key, *given, parameter.range);
