@@ -80,8 +80,8 @@ def programs_of(tree):
     text = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
     programs = []
     # A library, and the names of tests, each of which is also a program of its own.
-    lists = re.findall(r"^add_tests\(\w+ (\w+) \w+\n([^)]*)\)", text, re.MULTILINE)
-    own = re.findall(r"^add_own_test\((\w+) (\w+) \w+\)", text, re.MULTILINE)
+    lists = re.findall(r"^add_tests\(\w+ (\w+)\n([^)]*)\)", text, re.MULTILINE)
+    own = re.findall(r"^add_own_test\((\w+) (\w+)\)", text, re.MULTILINE)
     for library, names in [*lists, *((library, name) for name, library in own)]:
         for name in names.split():
             size = (folder / f"{name}.cpp").stat().st_size
