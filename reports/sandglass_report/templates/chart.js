@@ -179,7 +179,7 @@ function startChart(Plotly) {
     tools.querySelector(".answer").textContent = best
       ? `Cheapest within ${percent(view.tolerance)} and ${seconds(view.budget)}: ${name(best)}: ${percent(errorOf(best, view))} at ${seconds(best[view.cost])}. ${enough.length} of ${ours.length} are within both.`
       : ours.length ? `None of the ${ours.length} shown is within ${percent(view.tolerance)} and ${seconds(view.budget)}.`
-        : data.points.some((p) => leads(p) && p[view.cost] > 0) ? "No method of Sandglass with this time is shown."
+        : data.points.some((p) => leads(p) && Object.keys(data.costs).some((cost) => p[cost] > 0)) ? "No method of Sandglass with this time is shown."
           : "These methods of Sandglass were not timed; bash ci/verify times them.";
     const cell = (text, kind) => Object.assign(document.createElement("td"), { textContent: text, className: kind ?? "" });
     tools.querySelector("tbody").replaceChildren(...enough.slice(0, 8).map((i) => {
