@@ -194,4 +194,8 @@ def require_plausible(points, measured, own, loaded):
     if found:
         listed = "; ".join(f"{mark} [{rule}]" for rule, mark in found[:3])
         more = f"; and {len(found) - 3} more" if len(found) > 3 else ""
-        raise InputError(f"the chart has marks that cannot be true: {listed}{more}")
+        raise InputError(
+            f"the chart has marks that cannot be true: {listed}{more}; remedy: if the machine was "
+            "busy, run `bash ci/verify` again while it is idle; `bash ci/verify accuracy` makes a "
+            "page without times"
+        )

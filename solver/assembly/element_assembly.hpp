@@ -7,6 +7,7 @@
 
 #include "assembly/levelled_elements.hpp"
 #include "base/hot_loop.hpp"
+#include "material/called_tangent.hpp"
 #include "material/material_axes.hpp"
 #include "material/memory.hpp"
 
@@ -127,11 +128,14 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
     const auto laws = laws_at(state.step);
-    this->per_element(state, bounds,
-                      [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
-                        return stiffness_bound<Method>(motion, element, history<Method>(state, at.pack),
-                                                       with_axes(laws[at.material], at.axes));
-                      });
+    this->per_element(
+        state, bounds, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
+          const auto remembered = history<Method>(state, at.pack);
+          const auto oriented = with_axes(laws[at.material], at.axes);
+          const auto& law = recalling(oriented, remembered.law);
+          return Base::template stiffness_bound<Method>(motion, element, remembered.hourglass,
+                                                        CalledTangent<Number>(laws_[at.material], law));
+        });
   }
 
   Adaptation adapt(State<Real>& state, const Rows<Real>& mobility, double length,
@@ -201,15 +205,6 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     using Kernel = KernelOf<Method>;
     return double_dot(
         from_modes(Kernel::force(Kernel::deformation(motion, element), element, remembered, law)), v);
-  }
-
-  /// Runs at every check of a motion, and in every evaluation of some searches.
-  template <class Method, class Element, class LawAtStep>
-  SANDGLASS_HOT_LOOP static Number stiffness_bound(const ElementMotion<Number>& motion,
-                                                   const Element& element,
-                                                   const HistoryBlock<Method>& remembered,
-                                                   const LawAtStep& law) {
-    return KernelOf<Method>::stiffness_bound(motion, element, remembered, law);
   }
 
   auto laws_at(double step) const {

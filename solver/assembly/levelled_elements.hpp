@@ -20,6 +20,7 @@
 #include "base/type_list.hpp"
 #include "element/method_traits.hpp"
 #include "element/replaced_pressure.hpp"
+#include "material/called_tangent.hpp"
 
 namespace sandglass {
 
@@ -218,6 +219,14 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       for_each_lane(
           [&](std::size_t e, int lane) { values[e] = static_cast<double>(Lanes<Number>::get(value, lane)); });
     });
+  }
+
+  /// Runs at every check of a motion, and in every evaluation of some searches.
+  template <class Method, class Element, class HourglassHistory>
+  SANDGLASS_HOT_LOOP static Number stiffness_bound(const ElementMotion<Number>& motion,
+                                                   const Element& element, const HourglassHistory& remembered,
+                                                   const CalledTangent<Number>& law) {
+    return KernelOf<Method>::stiffness_bound(motion, element, {.hourglass = remembered}, law);
   }
 
   std::shared_ptr<const Layout> layout_;  // of all elements

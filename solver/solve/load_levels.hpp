@@ -120,6 +120,12 @@ class LoadLevels {
     return sum;
   }
 
+  /// The share of a search that is done, for display: loads up to 0.3, then the digits of the residual.
+  double progress(double residual, double tolerance) const {
+    if (!full()) return 0.3 * travelled() / way();
+    return 0.3 + 0.7 * std::log(std::clamp(residual, tolerance, 1.0)) / std::log(tolerance);
+  }
+
   /// The changes of the terms of paths of each angle over this load level.
   std::vector<PathTerms> moved() const {
     std::vector<PathTerms> changes;

@@ -11,6 +11,7 @@
 #include "problem/held.hpp"
 #include "solve/adaption.hpp"
 #include "solve/augmentation_schedule.hpp"
+#include "solve/best_state.hpp"
 #include "solve/condensed_answer.hpp"
 #include "solve/driving_forces.hpp"
 #include "solve/equilibrium.hpp"
@@ -154,25 +155,19 @@ class Search {
   bool search() {
     Stagnation stagnation(epsilon, amplification_);
     int stagnations = 0;
-    std::optional<std::pair<State<Real>, std::vector<Real>>>
-        best;  // since only rounding is left, during which a search may drift
-    double least = INFINITY;
+    BestState<Real> best;
     int augmentations = augmentations_.count();
     result_.stagnated = result_.rounded = false;
     while (!arrived() || settle()) {
       if (std::exchange(augmentations, augmentations_.count()) != augmentations_.count()) {
         stagnation = Stagnation(epsilon, amplification_);
-        best.reset();
-        least = INFINITY;
+        best = {};
       }
       check();
       if (ended_) return false;
       if (!equilibrium_.step() && !stagnation.at_roundoff()) return false;
       stagnation.take(equilibrium_.residual(), at_rounding());
-      if (stagnation.at_roundoff() && equilibrium_.residual() < least && !elements_.needs_increment()) {
-        least = equilibrium_.residual();
-        best.emplace(body().state(), equilibrium_.pressures());
-      }
+      if (stagnation.at_roundoff() && !elements_.needs_increment()) best.take(equilibrium_);
       if (!stagnation.reached()) continue;
       // In single precision a second attempt gets closer.
       if (++stagnations > 1 || (std::is_same_v<Real, double> && at_rounding())) {
@@ -182,11 +177,7 @@ class Search {
       stagnation = Stagnation(epsilon, amplification_);
       equilibrium_.start(load_levels_.effort());
     }
-    if (best && !near() && !at_rounding()) {
-      body().state() = best->first;
-      equilibrium_.pressures() = best->second;
-      equilibrium_.start(load_levels_.effort());
-    }
+    if (!near() && !at_rounding() && best.restore(equilibrium_)) equilibrium_.start(load_levels_.effort());
     const bool healthy = is_healthy(body());
     result_.stagnated = healthy && !near();
     const bool single = std::is_same_v<Real, float>;
@@ -346,13 +337,9 @@ class Search {
     const long evaluations = equilibrium_.evaluations();
     ended_ = evaluations >= most_evaluations_;
     const double residual = equilibrium_.residual();
-    const double digits =
-        std::log(std::clamp(residual, settings_.tolerance, 1.0)) / std::log(settings_.tolerance);
     observer_.at_load(load_levels_.load());
-    const bool proceeds = observer_.proceed(
-        evaluations,
-        load_levels_.full() ? 0.3 + 0.7 * digits : 0.3 * load_levels_.travelled() / load_levels_.way(),
-        residual);
+    const bool proceeds =
+        observer_.proceed(evaluations, load_levels_.progress(residual, settings_.tolerance), residual);
     if (evaluations < next_check_) return;
     next_check_ = evaluations + settings_.check_interval;
     if (load_levels_.full()) report();
@@ -395,18 +382,16 @@ class Search {
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from, const NodalField* near) {
   require_static_contact(model.scene());
   require_held(model.scene());
+  const auto search = [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+    if (near != nullptr && !depends_on_path(model, *elements)) {
+      if (auto found = Search<Real>(model, *elements, observer).run_near(*near)) return std::move(*found);
+    }
+    return Search<Real>(model, *elements, observer).run(from);
+  };
+  const bool condensed = method_named(model.choice().method).is_condensed;
   const auto start = std::chrono::steady_clock::now();
-  Relaxation result = method_named(model.choice().method).is_condensed
-                          ? condensed_answer(model, observer)
-                          : std::visit(
-                                [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
-                                  if (near != nullptr && !depends_on_path(model, *elements)) {
-                                    auto found = Search<Real>(model, *elements, observer).run_near(*near);
-                                    if (found) return std::move(*found);
-                                  }
-                                  return Search<Real>(model, *elements, observer).run(from);
-                                },
-                                model.internal_force());
+  Relaxation result =
+      condensed ? condensed_answer(model, observer) : std::visit(search, model.internal_force());
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
