@@ -140,7 +140,7 @@ double smallest_eigenvalue(const Scene& scene, const Model& model, const NodalFi
       K[k * free.size() + m] += 0.5 * entry;
     }
   }
-  const std::vector<double> values = symmetric_eigenvalues(K.data(), static_cast<int>(free.size()));
+  const std::vector<double> values = symmetric_eigenvalues(K);
   return values.front() / values.back();
 }
 

@@ -302,12 +302,14 @@ class Block {
         K[column * size + row] += 0.5 * slope;
       }
     }
-    const auto modes = symmetric_eigenpairs(K.data(), static_cast<int>(size));
+    const Eigenpairs modes = symmetric_eigenpairs(K);
     // Between plates, three rigid motions (two slides, a turn) are among the first modes if they exist.
-    for (const auto& [value, vector] : modes) {
-      if (std::abs(value) < 1e-6 * modes.back().first) continue;
+    for (std::size_t mode = 0; mode < size; ++mode) {
+      const double value = modes.values[mode];
+      if (std::abs(value) < 1e-6 * modes.values.back()) continue;
       NodalField v(mesh_.points.size());
-      for (std::size_t row = 0; row < size; ++row) v[free_[row].first][free_[row].second] = vector[row];
+      for (std::size_t row = 0; row < size; ++row)
+        v[free_[row].first][free_[row].second] = modes.vectors[mode][row];
       const HourglassContent content = hourglass_content(mesh_, v);
       return {value, content.hourglass * content.hourglass / (content.total * content.total)};
     }

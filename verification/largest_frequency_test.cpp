@@ -66,7 +66,7 @@ double longest_step(const Scene& scene, const Model& model, const NodalField& u)
           handed[i][node] / std::sqrt(model.masses()[node] * model.masses()[free[k].first]);
     }
   }
-  return 2.0 / std::sqrt(symmetric_eigenvalues(K.data(), static_cast<int>(free.size())).back());
+  return 2.0 / std::sqrt(symmetric_eigenvalues(K).back());
 }
 
 /// A block pressed to half its height and sheared, times `share`.

@@ -20,7 +20,7 @@ using subcycled::bar, subcycled::moving_case, subcycled::Operator, subcycled::op
     subcycled::refined_at_the_origin, subcycled::scene_on, subcycled::subcycled_case;
 
 std::vector<double> eigenvalues_of(const Operator& found) {
-  return symmetric_eigenvalues(found.matrix.data(), found.size);
+  return symmetric_eigenvalues(found.matrix);
 }
 
 /// Frequencies of the motion in steps, 1/s: sin(w dt / 2) = dt sqrt(eigenvalue) / 2.

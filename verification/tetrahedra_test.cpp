@@ -229,7 +229,7 @@ double largest_frequency_square(const Model& model, NodalField u) {
       K[n * size + m] = (up[m / 3][m % 3] - down[m / 3][m % 3]) / (2 * h * mass);
     }
   }
-  return symmetric_eigenvalues(K.data(), static_cast<int>(size)).back();
+  return symmetric_eigenvalues(K).back();
 }
 
 /// Nodal pressures couple all elements around a node: no element has a tangent of its own, but the step from

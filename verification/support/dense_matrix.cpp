@@ -1,29 +1,9 @@
 #include "support/dense_matrix.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
 
 namespace sandglass::verification {
-
-std::vector<double> symmetric_eigenvalues(const double* entries, int size) {
-  const Eigen::MatrixXd matrix = Eigen::Map<const Eigen::MatrixXd>(entries, size, size);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
-  const Eigen::VectorXd& values = solver.eigenvalues();
-  return {values.begin(), values.end()};
-}
-
-std::vector<std::pair<double, std::vector<double>>> symmetric_eigenpairs(const double* entries, int size) {
-  const Eigen::MatrixXd matrix = Eigen::Map<const Eigen::MatrixXd>(entries, size, size);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
-  std::vector<std::pair<double, std::vector<double>>> pairs;
-  for (int n = 0; n < size; ++n) {
-    const Eigen::VectorXd vector = solver.eigenvectors().col(n);
-    pairs.emplace_back(solver.eigenvalues()[n], std::vector<double>{vector.begin(), vector.end()});
-  }
-  return pairs;
-}
 
 double largest_eigenvalue_magnitude(const double* entries, int size) {
   // Gelfand's formula, the limit of |A^m|^(1/m), m = 2, 4, 8, ...: the norm exceeds the radius by a factor
@@ -48,12 +28,6 @@ std::function<std::vector<double>(const std::vector<double>&)> factored(const do
     const Eigen::VectorXd x = solver.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), size));
     return std::vector<double>(x.begin(), x.end());
   };
-}
-
-std::vector<double> exponential(const double* entries, int size) {
-  // Rows serve as columns: the exponential of the transpose is the transpose of the exponential.
-  const Eigen::MatrixXd exp = Eigen::MatrixXd(Eigen::Map<const Eigen::MatrixXd>(entries, size, size)).exp();
-  return {exp.data(), exp.data() + exp.size()};
 }
 
 }  // namespace sandglass::verification

@@ -9,6 +9,15 @@
 namespace sandglass::verification {
 
 /// Random numbers, rotations, hexahedra and deformations, equal on every machine: the standard defines the
+/// The rotation by a quaternion of any length.
+template <class T>
+Tensor<T> rotation_of(T w, T x, T y, T z) {
+  const T s = T(2) / (w * w + x * x + y * y + z * z);
+  return {{1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w),  //
+           s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w),  //
+           s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)}};
+}
+
 /// engine's bits but not std::uniform_real_distribution, which a conversion of our own replaces.
 class RandomGeometry {
  public:
@@ -35,10 +44,7 @@ class RandomGeometry {
       z = uniform(-1.0, 1.0);
       square = w * w + x * x + y * y + z * z;
     }
-    const double s = 2.0 / square;
-    return {{1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w),  //
-             s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w),  //
-             s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)}};
+    return rotation_of(w, x, y, z);
   }
 
   /// A deformation gradient: rotation times stretches of the given range along random axes.

@@ -98,8 +98,8 @@ double true_over_bound(const Sample& sample, const typename Pair::Law& law,
       scene.mesh, law, {.kappa = kappa, .density = scene.materials.list.front().density}, sample.u);
   const auto K = tangent.over_masses(model.masses(), 2.0 / dt);
   const int size = 3 * static_cast<int>(sample.u.size());
-  const double truth = Kernel::remembers ? largest_eigenvalue_magnitude(K.data(), size)
-                                         : symmetric_eigenvalues(K.data(), size).back();
+  const double truth =
+      Kernel::remembers ? largest_eigenvalue_magnitude(K.data(), size) : symmetric_eigenvalues(K).back();
   return truth * dt * dt / 4.0;
 }
 
