@@ -144,7 +144,7 @@ RunAnswer compute(const RunOptions& options, const Given& given, const CaseOnMes
   const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
   RunAnswer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
                                   : dynamic_answer(model, observer, from);
-  print_answer(scene, answer.u, observer.volume_ratios(), observer.found());
+  print_answer(model, answer.u, observer.volume_ratios(), observer.found());
   print_levels(model.choice().method, observer.levels(), answer.adaption_seconds / answer.seconds);
   if (quasi_static && answer.status == "complete") {
     if (refined != nullptr) {
@@ -226,7 +226,7 @@ void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks>
   command
       ->add_option("-m,--method", options->method,
                    "method, see `sandglass methods`; default: the case's [method], else "
-                   "tl-perturbation in double with kappa auto")
+                   "tl-perturbation in double with kappa auto, or tl-mean-dilatation with --against")
       ->type_name("METHOD");
   command->add_option("-k,--kappa", options->kappa, "strength of the hourglass control, a number or 'auto'");
   command->add_option(

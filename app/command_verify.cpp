@@ -102,7 +102,7 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
     if (in_tables(*v)) continue;
     if (case_name == nullptr || *case_name != v->case_name) {
       case_name = &v->case_name;
-      fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>7}{:>8}{:>9}{:>9}{:>8}{:>9}  {}\n", *case_name,
+      fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>7}{:>8}{:>9}{:>9}{:>7}{:>10}  {}\n", *case_name,
                  "kappa", "against the golden", "against the truth", "hg/int%", "ops", "ns/step", "step ms",
                  "s/sim. s", v->motion ? "steps" : "evals", "solved, s", "finding");
     }

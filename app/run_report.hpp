@@ -29,8 +29,9 @@ class HistoryReport {
 
   const HistoryRow& last() const { return last_; }
 
-  /// Hourglass over strain energy: at the end of a quasi-static run; in a motion, the largest of each.
-  double hourglass_share(bool quasi_static) const;
+  /// The strain and hourglass energy, J: at the end of a quasi-static run; in a motion, the largest of each.
+  double strain(bool quasi_static) const;
+  double hourglass(bool quasi_static) const;
 
   /// The largest depth of a node in an obstacle, m: at the end of a quasi-static run; in a motion, the
   /// largest.
@@ -50,7 +51,7 @@ class HistoryReport {
 /// the share of the hourglass energy, reactions, separate parts.
 void print_static_ending(const Relaxation& found, Precision precision, double tolerance, bool went_on);
 void print_dynamic_ending(const Motion& found, const Model& model, bool went_on);
-void print_answer(const Scene& scene, const NodalField& u, const std::vector<double>& volume_ratios,
+void print_answer(const Model& model, const NodalField& u, const std::vector<double>& volume_ratios,
                   const HistoryReport& history);
 
 /// Prints warnings about a suspect answer to standard error, each with a remedy.

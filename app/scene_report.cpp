@@ -14,6 +14,7 @@
 #include "mesh/parts.hpp"
 #include "problem/held.hpp"
 #include "problem/masses.hpp"
+#include "solve/loading_curve.hpp"
 
 namespace sandglass {
 
@@ -153,6 +154,25 @@ void print_replaced_sets(const CaseOnMesh& problem, const Scene& scene, const st
         scene.element_sets);
 }
 
+/// Notes on loads that do not reach what their tables give.
+void print_shortened_loads(const Scene& scene, const std::string& of) {
+  const DynamicsSettings& motion = scene.settings.dynamics;
+  if (!scene.settings.quasi_static) {
+    if (motion.ramp_time > motion.duration) {
+      fmt::print(
+          "note: {}ramp_time = {:g} s is longer than duration = {:g} s: loads reach {:.2g} of their values\n",
+          of, motion.ramp_time, motion.duration, loading_curve(motion, motion.duration).value());
+    }
+    return;
+  }
+  double last = 0.0;
+  for (const LoadCurve& curve : scene.curves) {
+    if (!curve.times.empty()) last = std::max(last, curve.times.back());
+  }
+  if (last > 1.0)
+    fmt::print("note: {}times of a load reach {:g}, but static answers end at 1, the whole load\n", of, last);
+}
+
 /// The boundary of a scene without the faces of two surfaces that a [[contact]] keeps apart.
 std::vector<Quadrilateral> boundary_without_contact(const Case& description, const Scene& scene) {
   std::vector<Quadrilateral> faces = scene.boundary;
@@ -209,6 +229,7 @@ void print_understood(const CaseOnMesh& problem, const Scene& scene, const std::
   print_parts(scene, of);
   if (!scene.settings.quasi_static) print_free_motions(scene, of);
   print_replaced_sets(problem, scene, of);
+  print_shortened_loads(scene, of);
   warn_of_oddities(problem.description, scene, of);
 }
 

@@ -29,9 +29,10 @@ std::unique_ptr<AnyBatch> made(const py::object& points, const py::object& cells
   const int bodies = arguments.integer("bodies"), threads = arguments.integer("threads");
   require_count("bodies", bodies, 1'000'000);
   require_count("threads", threads, 1024);
-  const SimulationSettings settings{
-      arguments.optional("method", &Arguments::text), arguments.optional("kappa", &Arguments::number),
-      arguments.optional("damping", &Arguments::number), arguments.number("step_fraction"), threads};
+  const SimulationSettings settings{arguments.optional("method", &Arguments::text),
+                                    arguments.optional("kappa", &Arguments::number),
+                                    arguments.optional("damping", &Arguments::number),
+                                    arguments.optional("step_fraction", &Arguments::number), threads};
   return std::make_unique<AnyBatch>(arguments.text("precision"),
                                     mesh_arrays(points, cells, sets, element_sets), text,
                                     static_cast<std::size_t>(bodies), settings);

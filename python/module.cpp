@@ -161,7 +161,7 @@ void move(AnySimulation& self, const py::object& set_name, const py::object& giv
 Arguments with_defaults(const py::kwargs& given) {
   using namespace pybind11::literals;
   py::dict all("precision"_a = "double", "method"_a = py::none(), "kappa"_a = py::none(),
-               "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1, "device"_a = "cpu");
+               "damping"_a = py::none(), "step_fraction"_a = py::none(), "threads"_a = 1, "device"_a = "cpu");
   for (const auto& [name, value] : given) {
     if (!all.contains(name)) {
       throw py::type_error(py::str(name).cast<std::string>() +
@@ -179,7 +179,7 @@ SimulationSettings settings(const Arguments& given) {
   return {given.optional("method", &Arguments::text),
           given.optional("kappa", &Arguments::number),
           given.optional("damping", &Arguments::number),
-          given.number("step_fraction"),
+          given.optional("step_fraction", &Arguments::number),
           threads,
           given.text("device")};
 }
@@ -209,8 +209,8 @@ constexpr const char* about_simulation =
     simulation.advance(1 / 60)
 
 The case file is one for `sandglass run`; the body starts undeformed, at rest or with the case's initial velocities.
-Keywords: `precision`, "double" or "float"; `method`, `kappa` and `damping` (1/s) override the case's; steps are at most
-`step_fraction` (0.9) of the stable step; `threads` (1); `device="opencl"` takes the steps on another processor, where the
+Keywords: `precision`, "double" or "float"; `method`, `kappa`, `damping` (1/s) and `step_fraction`, the longest step over
+the stable one, override the case's; a `time_step` of the case is the longest step; `threads` (1); `device="opencl"` takes the steps on another processor, where the
 body stays between calls. Arrays are read-only views of the simulation's own: they show its current state and keep it
 alive. Only one thread may use it at a time; `advance` releases the GIL.)";
 

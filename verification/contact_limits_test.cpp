@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "solve/central_difference.hpp"
@@ -99,6 +100,35 @@ TEST(ContactLimits, refuses_a_tool_within_a_body) {
     };
     expect_in(message({0.3, 0.3, 0.7}), "its point (0.3, 0.3, 0.7) m is within the body at the start");
     EXPECT_EQ(message({0.3, 0.3, 1.2}), "");
+  }
+}
+
+/// A plane that presses a side, from the right and from the wrong side, touching or with a gap; its set may
+/// be the whole surface.
+TEST(ContactLimits, refuses_a_plane_that_looks_away_from_the_body) {
+  for (const auto& [set, z, normal, refused] : {std::tuple{"top", 1.0, -1.0, false},
+                                                {"top", 1.1, -1.0, false},
+                                                {"top", 1.0, 1.0, true},
+                                                {"top", 0.5, 1.0, true},
+                                                {"foot", 0.0, 1.0, false},
+                                                {"foot", 0.0, -1.0, true},
+                                                {"all", 1.0, -1.0, false},
+                                                {"side", 0.0, 1.0, false}}) {
+    Column block({1.0, 1.0, 1.0}, {2, 2, 2}, law());
+    auto& all = block.sets["all"];
+    all.resize(block.mesh.points.size());
+    std::iota(all.begin(), all.end(), 0);
+    block.description.forces.of<Obstacle>() = {{.label = "tool",
+                                                .set = set,
+                                                .shape = Obstacle::Shape::plane,
+                                                .point = {0.5, 0.5, z},
+                                                .normal = {0.0, 0.0, normal}}};
+    const std::string said = message_of<InputError>([&] { block.scene(); });
+    SCOPED_TRACE(fmt::format("{} {} {}: {}", set, z, normal, said));
+    if (refused)
+      expect_in(said, "the body is behind the plane");
+    else
+      EXPECT_EQ(said, "");
   }
 }
 

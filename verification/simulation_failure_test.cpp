@@ -101,6 +101,23 @@ TEST(Simulation, takes_steps_that_prove_too_long_again) {
   }
 }
 
+/// Of the case, unless the program chooses it; a time step is the longest.
+TEST(Simulation, takes_the_steps_of_the_case) {
+  const auto step = [](const std::string& keys, const SimulationSettings& settings) {
+    std::string text = text_of(pulled);
+    text.insert(text.find("duration"), keys);
+    return Simulation<double>(block(), text, settings).step_size();
+  };
+  const double usual = step("", {});
+  EXPECT_EQ(step("", {.step_fraction = 0.9}), usual);
+  EXPECT_DOUBLE_EQ(step("", {.step_fraction = 0.45}), 0.5 * usual);
+  const std::string half = "step_fraction = 0.45\n";
+  EXPECT_DOUBLE_EQ(step(half, {}), 0.5 * usual);
+  EXPECT_EQ(step(half, {.step_fraction = 0.9}), usual);
+  EXPECT_EQ(step("time_step = 1e-4\n", {}), 1e-4);
+  EXPECT_EQ(step("time_step = 10.0\n", {}), usual);
+}
+
 TEST(Simulation, refuses_what_makes_no_sense) {
   using ::testing::IsSubstring;
   Simulation<double> simulation(block(), text_of(pulled + "[sets.side]\nx = [0.1, 0.1]\ny = [0.05, 0.05]\n"

@@ -4,6 +4,7 @@ Exit codes: 0 ok, 1 a limit is broken, 2 bad usage or input, 3 the computation f
 """
 
 import os
+import re
 import shutil
 import xml.etree.ElementTree
 
@@ -60,6 +61,15 @@ def test_methods_lists_one_line_each():
 
 
 # Wrong input.
+
+
+def test_a_variant_is_named_after_its_file(tmp_path):
+    file = tmp_path / "other.toml"
+    shutil.copy(ROOT / "cases" / "bending.toml", file)
+    first = re.search(r"as in (\S+)$", sandglass("run", file, code=2).stderr.strip())[1]
+    assert first.startswith(f"{file}/bending-")
+    assert sandglass("run", first, code=0).stdout.startswith(f"{first.rpartition('/')[2]}: ")
+    sandglass("run", file / "bending-9", code=2, message=["has no variant 'bending-9'; it has"])
 
 
 def test_variant_is_found_by_name_and_beside_its_file(tmp_path):

@@ -188,6 +188,22 @@ def test_much_hourglass_energy_is_warned_of_and_the_remedy_has_none(block):
     assert "hourglass energy is" not in sandglass("run", ROOT / "cases" / "column.toml").stderr
 
 
+def test_damping_that_shortens_steps_is_named(block):
+    block.write_text(dynamic(BARE, duration=0.2, damping=1e6))
+    message = ["damping allows 1e-06 s", "remedy: damp less"]
+    sandglass("run", block, code=3, message=message)
+    block.write_text(dynamic(BARE, duration=0.2, damping=1e6, time_step=1e-5))
+    sandglass("run", block, code=2, message="above the stable step 1e-06 s, set by damping at step 0")
+
+
+def test_hourglass_modes_of_a_rigid_motion_are_rounding(tmp_path):
+    case = tmp_path / "falling.toml"
+    text = BARE[: BARE.index("[[displacement]]")] + "[[gravity]]\nvalue = [0.0, 0.0, -9.81]\n"
+    case.write_text(dynamic(text, duration=0.1))
+    outcome = sandglass("run", case, code=0)
+    assert "hourglass energy" not in outcome.stdout + outcome.stderr
+
+
 @pytest.mark.parametrize(("kappa", "warned"), [("0.12", False), ("0.14", True)])
 def test_a_kappa_far_above_the_automatic_one_is_warned_of(block, kappa, warned):
     """That is 0.00649 at Poisson's ratio .49, and 20 times as much 0.1298."""

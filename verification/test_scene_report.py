@@ -35,6 +35,21 @@ def refusal(case, command="run"):
     return outcome.stderr
 
 
+def test_loads_that_end_before_their_tables_are_noted(tmp_path):
+    case = tmp_path / "case.toml"
+    held = BARE[: BARE.rindex("[[displacement]]")]
+    force = '[[force]]\nset = "head"\ntotal = [0.0, 0.0, 0.01]\nfactors = [0.0, 1.0]\n'
+    for last, noted in [("1.0", False), ("10.0", True)]:
+        case.write_text(f"{held}{force}times = [0.0, {last}]\n")
+        said = sandglass("run", case, code=0).stdout
+        assert ("note: times of a load reach 10, but static answers end at 1" in said) == noted
+    for ramp, noted in [(0.02, False), (0.1, True)]:
+        case.write_text(dynamic(BARE, duration=0.02, ramp_time=ramp))
+        said = sandglass("run", case, code=0).stdout
+        words = "note: ramp_time = 0.1 s is longer than duration = 0.02 s: loads reach 0.058 of"
+        assert (words in said) == noted
+
+
 @pytest.mark.parametrize("command", ["run", "verify", "choose"])
 def test_a_cube_between_frictionless_plates_is_free_to_slide(tmp_path, command):
     case = tmp_path / "only-z.toml"

@@ -108,6 +108,11 @@ std::function<double(double)> parse_formula(const std::string& text, const std::
     value_at(0.0);
   } catch (const mu::Parser::exception_type& error) {
     if (error.GetCode() == mu::ecEMPTY_EXPRESSION) refuse("nothing", 0);
+    if (error.GetCode() == mu::ecMISSING_PARENS) refuse("a missing ')'", text.size());
+    if (error.GetCode() == mu::ecUNEXPECTED_EOF) refuse("an unexpected end", text.size());
+    if (error.GetCode() == mu::ecTOO_FEW_PARAMS || error.GetCode() == mu::ecTOO_MANY_PARAMS)
+      refuse(fmt::format("a wrong number of arguments for '{}'", error.GetToken()),
+             text.find(error.GetToken()));
     refuse(fmt::format("wrong '{}'", error.GetToken()), static_cast<std::size_t>(error.GetPos()));
   }
   if (formula->parser.GetNumResults() != 1) refuse("a ',' outside of a function", text.find(','));

@@ -6,6 +6,8 @@
 #include "base/error.hpp"
 #include "forces/contact_input.hpp"
 #include "forces/obstacle_contact.hpp"
+#include "mesh/face_load.hpp"
+#include "mesh/vectors.hpp"
 
 namespace sandglass {
 
@@ -37,6 +39,22 @@ ObstacleShape shape_of(const Obstacle& given, const std::filesystem::path& file)
     }
   }
   return {};
+}
+
+/// Whether the faces that are closest to a plane look along its normal: then the body is behind it.
+bool are_behind(const Vector& normal, const std::vector<Quadrilateral>& faces, const NodalField& points,
+                double rounding) {
+  const auto height = [&](int node) { return dot(normal, points[at(node)]); };
+  double lowest = INFINITY;
+  for (const Quadrilateral& face : faces) {
+    for (const int node : face) lowest = std::min(lowest, height(node));
+  }
+  Vector sum{};
+  for (const Quadrilateral& face : faces) {
+    if (std::ranges::none_of(face, [&](int node) { return height(node) <= lowest + rounding; })) continue;
+    for (const FacePoint& gauss : gauss_points_of(corners_of(points, face))) sum += gauss.normal;
+  }
+  return dot(normal, sum) > 0.5 * length(sum);
 }
 
 }  // namespace
@@ -92,6 +110,13 @@ void Obstacle::resolve(ForceResolver& resolver) const {
         fmt::format("{}: {} '{}': all nodes of set '{}' are held or driven, and feel no obstacle; "
                     "allowed: a set with nodes that may move",
                     resolver.file, name, label, set));
+  }
+  if (shape == Shape::plane &&
+      are_behind(direction_of(normal, length(normal)), faces, resolver.points, scale.rounding())) {
+    throw InputError(
+        fmt::format("{}: {} '{}': the body is behind the plane: the faces of set '{}' that are closest to it "
+                    "look along its normal ({:.3g}, {:.3g}, {:.3g}); allowed: a normal towards the body",
+                    resolver.file, name, label, set, normal[0], normal[1], normal[2]));
   }
   ObstaclePath path{{{resolver.number_of(curve), displacement}}, resolver.add_moves(), {}};
   for (const ObstacleMove& move : moves)

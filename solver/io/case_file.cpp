@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
@@ -66,13 +67,17 @@ ImposedDisplacement read_displacement(TableReader table) {
   if (const auto components = table.optional<std::string>("components")) {
     imposed.components = {};
     for (const char c : *components) {
-      if (c < 'x' || c > 'z')
-        table.fail("components", fmt::format("= '{}' must consist of x, y, z", *components));
-      imposed.components[static_cast<std::size_t>(c - 'x')] = true;
+      if (c < 'x' || c > 'z' || std::exchange(imposed.components[static_cast<std::size_t>(c - 'x')], true))
+        table.fail("components", fmt::format("= '{}' must consist of x, y, z, each once", *components));
     }
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!imposed.components[i]) imposed.value[i] = 0.0;
+    if (components->empty()) table.fail("components", "= '' must name at least one of x, y, z");
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (imposed.components[i] || imposed.value[i] == 0.0) continue;
+      table.fail("value",
+                 fmt::format("has {:g} m along {}, which components = '{}' does not impose; allowed: "
+                             "0, or to impose it too",
+                             imposed.value[i], "xyz"[i], *components));
+    }
   }
   table.finish();
   return imposed;
@@ -229,6 +234,11 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
     auto dynamics = reader.required_table("dynamics");
     dynamics.parameters(description.dynamics);
     dynamics.finish();
+  } else {
+    for (const std::string& key : reader.keys()) {
+      if (key == "dynamics" || key == InitialVelocity::name)
+        reader.fail(key, "is for motions; allowed: a case with answer = 'dynamic'");
+    }
   }
   if (auto method = reader.table("method")) description.method = read_method(*method);
   for (const auto& name : tables_not_read) reader.leave(name);

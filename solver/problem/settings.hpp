@@ -51,10 +51,11 @@ struct DynamicsSettings {
     using S = DynamicsSettings;
     return std::tuple{
         Parameter{&S::duration, "duration", "s", Range::positive(), "simulated time"},
-        Parameter{
-            &S::ramp_time, "ramp_time", "s", Range::at_least(0.0),
-            "time in which imposed displacements and forces reach their value; 0 means the whole duration",
-            false},
+        Parameter{&S::ramp_time, "ramp_time", "s", Range::at_least(0.0),
+                  "time in which imposed displacements, and loads without times or formula, grow by the "
+                  "loading curve "
+                  "(10 - 15 s + 6 s^2) s^3 of s = t / ramp_time; 0 means the whole duration",
+                  false},
         Parameter{&S::time_step, "time_step", "s", Range::at_least(0.0),
                   "fixed step, at most the stable one; 0 chooses step_fraction of the stable one", false},
         Parameter{&S::step_fraction, "step_fraction", "-", Range{.low = 0.0, .high = 1.0, .high_open = false},

@@ -98,7 +98,7 @@ class Batch<Real>::Parts {
   const DrivenProblem& problem() const { return problem_; }
   std::size_t size() const { return frequency_squares_.size(); }
   double time() const { return clock_.time; }
-  double step_size() const { return longest_step_.step(); }
+  double step_size() const { return problem_.longest_step(longest_step_.step()); }
 
   void scale_stiffness(std::size_t body, double factor) {
     require_in_range("factor", factor, Range::positive());
@@ -154,7 +154,7 @@ class Batch<Real>::Parts {
     while (left > 0.0) {
       std::vector<Step> steps;
       do {
-        const double count = steps_in(left, longest_step_.step());
+        const double count = steps_in(left, step_size());
         const double step = left / count;
         left = count > 1.0 ? left - step : 0.0;
         const auto coefficients = clock_.advance(step);
@@ -279,10 +279,10 @@ class Batch<Real>::Parts {
       frequency_squares_[b] = lane(extremes[b / lanes].frequency_square, b);
     }
     const auto fastest = std::max_element(frequency_squares_.begin(), frequency_squares_.end());
-    const double shortest = stable_step_of(problem_.model(), *fastest);
-    if (undeformed_step_ == 0.0) undeformed_step_ = shortest;
-    require_worthwhile({shortest, static_cast<int>(fastest - frequency_squares_.begin())}, undeformed_step_,
-                       time(), clock_.step, "body");
+    const StableStep shortest{stable_step_of(problem_.model(), *fastest),
+                              static_cast<int>(fastest - frequency_squares_.begin())};
+    if (undeformed_step_ == 0.0) undeformed_step_ = shortest.step;
+    require_worthwhile(damped(shortest, problem_.damping()), undeformed_step_, time(), clock_.step, "body");
     choose_step();
   }
 
@@ -291,7 +291,8 @@ class Batch<Real>::Parts {
     for (std::size_t b = 0; b < size(); ++b) {
       square = std::max(square, frequency_squares_[b] * lane(packs_[b / lanes].stiffness, b));
     }
-    longest_step_.next(problem_.step_fraction() * stable_step_of(problem_.model(), square), time());
+    const StableStep stable = damped({stable_step_of(problem_.model(), square), 0}, problem_.damping());
+    longest_step_.next(problem_.step_fraction() * stable.step, time());
   }
 
   const DrivenProblem problem_;

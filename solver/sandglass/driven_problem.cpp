@@ -41,8 +41,13 @@ const typename Sets::mapped_type& find(const Sets& sets, const std::string& name
   throw InputError(fmt::format("set '{}' {}; {}", name, rule, suggestion(name, names_in(sets))));
 }
 
+double step_fraction_of(const CaseSettings& of_case, const SimulationSettings& settings) {
+  return settings.step_fraction.value_or(of_case.dynamics.step_fraction);
+}
+
 MethodChoice choice_of(const CaseSettings& of_case, const SimulationSettings& settings, Precision precision) {
-  require_in_range("step_fraction", settings.step_fraction, {.low = 0.0, .high = 1.0, .high_open = false});
+  require_in_range("step_fraction", step_fraction_of(of_case, settings),
+                   {.low = 0.0, .high = 1.0, .high_open = false});
   require_in_range("damping", settings.damping.value_or(0.0), Range::at_least(0.0));
   MethodChoice choice = method_of(of_case, settings.method);
   if (settings.kappa) choice.kappa = settings.kappa;
@@ -60,7 +65,7 @@ DrivenProblem::DrivenProblem(Scene scene, const SimulationSettings& settings, Pr
       driven_(driven_sets(scene_)),
       targets_(scene_.constraints.size() + 3 * movable_of(scene_.forces).size()),
       damping_(settings.damping.value_or(scene_.settings.dynamics.damping)),
-      step_fraction_(settings.step_fraction) {
+      step_fraction_(step_fraction_of(scene_.settings, settings)) {
   require_steps(model_);
 }
 

@@ -44,6 +44,12 @@ class DrivenProblem {
   double damping() const { return damping_; }  ///< 1/s
   double step_fraction() const { return step_fraction_; }
 
+  /// A step (s), or the time step of the case, which is the longest if it is given.
+  double longest_step(double step) const {
+    const double given = scene_.settings.dynamics.time_step;
+    return given > 0.0 ? std::min(step, given) : step;
+  }
+
   /// The number of driven components: constraints, then three for each obstacle.
   std::size_t targets() const { return targets_; }
 

@@ -43,7 +43,7 @@ class Simulation<Real>::Parts {
   const Scene& scene() const { return problem_->scene(); }
   const Body<Real>& body() const { return leapfrog_.body(); }
   double time() const { return leapfrog_.time(); }
-  double step_size() const { return longest_step_.step(); }
+  double step_size() const { return problem_->longest_step(longest_step_.step()); }
 
   template <class Displacement>
   void move(const std::string& set, const Displacement& displacement) {
@@ -61,7 +61,7 @@ class Simulation<Real>::Parts {
     double whole = seconds, left = seconds;
     start_path();
     while (left > 0.0) {
-      const double steps = steps_in(left, longest_step_.step());
+      const double steps = steps_in(left, step_size());
       const double step = left / steps;
       left = steps > 1.0 ? left - step : 0.0;
       if (take(step, 1.0 - left / whole)) continue;
@@ -121,7 +121,7 @@ class Simulation<Real>::Parts {
     keep(CheckpointReader(run.point));
     keep_targets(CheckpointReader(run.point));
     device_steps_.begin_anew();
-    leapfrog_.body().set_step(longest_step_.step());
+    leapfrog_.body().set_step(step_size());
     keep(StateCopy(whole_));
   }
 
@@ -177,7 +177,7 @@ class Simulation<Real>::Parts {
     if (!healthy && longest_step_.may_shorten()) {
       go_back();
       longest_step_.shorten();
-      leapfrog_.body().set_step(longest_step_.step());
+      leapfrog_.body().set_step(step_size());
       keep(StateCopy(whole_));
       return false;
     }
@@ -207,7 +207,7 @@ class Simulation<Real>::Parts {
   [[noreturn]] void fail(const ComputationError& error) {
     const double failed = time();
     go_back();
-    leapfrog_.body().set_step(longest_step_.step());
+    leapfrog_.body().set_step(step_size());
     to_ = imposed_;
     factor_to_ = factor_;
     arrive();
@@ -254,7 +254,8 @@ class Simulation<Real>::Parts {
     const StableStep stable = leapfrog_.stable_step(model());
     if (undeformed_step_ == 0.0) undeformed_step_ = stable.step;
     require_worthwhile(stable, undeformed_step_, time(), leapfrog_.step());
-    leapfrog_.body().set_step(longest_step_.next(problem_->step_fraction() * stable.step, time()));
+    longest_step_.next(problem_->step_fraction() * stable.step, time());
+    leapfrog_.body().set_step(step_size());
   }
 
   std::shared_ptr<const DrivenProblem> problem_;

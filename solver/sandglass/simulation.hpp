@@ -29,9 +29,10 @@ struct SimulationSettings {
       {};                              ///< see `sandglass methods`; none: the case's, else tl-perturbation
   std::optional<double> kappa = {};    ///< strength of the hourglass control; none: the case's, else auto
   std::optional<double> damping = {};  ///< 1/s, proportional to mass; none: the case's
-  double step_fraction = 0.9;          ///< the longest step over the stable one, in (0, 1]
-  int threads = 1;                     ///< does not affect the bits
-  std::string device = "cpu";          ///< "opencl" or "opencl:2": takes the steps, and keeps the body
+  std::optional<double> step_fraction =
+      {};                      ///< the longest step over the stable one, in (0, 1]; none: the case's
+  int threads = 1;             ///< does not affect the bits
+  std::string device = "cpu";  ///< "opencl" or "opencl:2": takes the steps, and keeps the body
 };
 
 /// One vector per node where the time loop keeps it: component i of row r is at data[stride * r + i]. Rows

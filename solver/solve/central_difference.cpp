@@ -228,9 +228,11 @@ class CentralDifference {
   void require_stable(const StableStep& stable) const {
     if (settings_.time_step <= stable.step) return;
     const std::string text = fmt::format(
-        "dynamics.time_step = {:.6g} s is above the stable step {:.6g} s, set by element {} at step {}; "
+        "dynamics.time_step = {:.6g} s is above the stable step {:.6g} s, set by {} at step {}; "
         "allowed: at most the stable step, or 0 to let the program choose",
-        settings_.time_step, stable.step, stable.element, step());
+        settings_.time_step, stable.step,
+        stable.element == StableStep::by_damping ? "damping" : fmt::format("element {}", stable.element),
+        step());
     if (step() == 0) throw InputError(fmt::format("{}: {}", model_.scene().settings.file.string(), text));
     throw ComputationError(text);
   }

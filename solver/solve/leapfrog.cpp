@@ -62,9 +62,7 @@ StableStep Leapfrog<Real>::stable_step(const Model& model, double given_step) {
                                   body_.state(), bounds, std::pow(2.0 / stable.step, 2));
     if (std::isfinite(square)) stable.step = std::max(stable.step, stable_step_of(model, square));
   }
-  // With longer steps, velocities would overshoot; beyond 2 / damping they would change their sign.
-  if (clock_.damping > 0.0) stable.step = std::min(stable.step, 1.0 / clock_.damping);
-  return stable;
+  return damped(stable, clock_.damping);
 }
 
 template <class Real>

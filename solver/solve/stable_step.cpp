@@ -75,11 +75,16 @@ void require_worthwhile(const StableStep& stable, double undeformed_step, double
                         std::string_view part) {
   constexpr double least_share = 1e-3;
   if (stable.step >= least_share * undeformed_step) return;
+  const bool by_damping = stable.element == StableStep::by_damping;
   throw ComputationError(fmt::format(
-      "the stable step has collapsed at {:.6g} s, step {}: {} {} allows {:.3g} s, less than {} of the "
-      "undeformed body's {:.3g} s; remedy: impose less displacement or load, use a law that resists "
-      "compression, or refine the mesh",
-      time, step, part, stable.element, stable.step, least_share, undeformed_step));
+      "the stable step has collapsed at {:.6g} s, step {}: {} allows {:.3g} s, less than {} of the "
+      "undeformed "
+      "body's {:.3g} s; remedy: {}",
+      time, step, by_damping ? "damping" : fmt::format("{} {}", part, stable.element), stable.step,
+      least_share, undeformed_step,
+      by_damping
+          ? "damp less"
+          : "impose less displacement or load, use a law that resists compression, or refine the mesh"));
 }
 
 double stable_step_of(const Model& model, double square) {

@@ -10,9 +10,18 @@ namespace sandglass {
 
 /// The stable step of a mesh.
 struct StableStep {
+  static constexpr int by_damping = -2;
+
   double step;  ///< s
-  int element;  ///< the element that determines it
+  int element;  ///< the element that determines it, or `by_damping`
 };
+
+/// The stable step with mass-proportional damping (1/s), at most 1 / damping: with longer steps, velocities
+/// would overshoot; beyond 2 / damping they would change their sign.
+inline StableStep damped(const StableStep& stable, double damping) {
+  if (damping * stable.step <= 1.0) return stable;
+  return {1.0 / damping, StableStep::by_damping};
+}
 
 /// 2 / omega_max (s) of each element from bounds of their stiffness (N/m), with omega_max^2 <= bound / (rho V
 /// / 8) and what springs and pressures add. The largest frequency of a mesh is at most the largest of its

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "assembly/method_entry.hpp"
@@ -121,6 +122,12 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
   Reference reference{.name = against, .u = {}, .unit = 0.0, .own = {}};
   if (!against.empty()) {
     const auto& path = against == "truth" ? comparison.truth : comparison.golden;
+    if (std::error_code ignored; !std::filesystem::exists(path, ignored)) {
+      throw InputError(
+          fmt::format("{}: the case has no {}, as there is no {}; without --against, errors are those "
+                      "to the answer of {} on this mesh",
+                      scene.settings.name, against, path.string(), golden_method));
+    }
     reference.u = read_reference(path, scene);
   } else {
     reference.name = golden_method;

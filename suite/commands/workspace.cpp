@@ -78,6 +78,13 @@ std::vector<Case> find_cases(const std::string& name_or_path) {
   std::error_code ignored;
   if (fs::is_regular_file(name_or_path, ignored)) return read_checked(name_or_path);
   const fs::path path(name_or_path);
+  if (fs::is_regular_file(path.parent_path(), ignored)) {
+    std::vector<Case> variants = read_checked(path.parent_path());
+    std::erase_if(variants, [&](const Case& variant) { return variant.name != path.filename(); });
+    if (!variants.empty()) return variants;
+    throw InputError(fmt::format("case: {} has no variant '{}'; it has {}", path.parent_path().string(),
+                                 path.filename().string(), listed(read_checked(path.parent_path()))));
+  }
   const fs::path folder = path.has_parent_path() ? path.parent_path() : case_folder();
   const std::string name = path.filename().string();
   if (fs::is_regular_file(folder / (name + ".toml"), ignored)) return read_checked(folder / (name + ".toml"));
@@ -99,8 +106,10 @@ std::vector<Case> find_cases(const std::string& name_or_path) {
 Case find_case(const std::string& name_or_path) {
   auto cases = find_cases(name_or_path);
   if (cases.size() > 1) {
-    throw InputError(fmt::format("case: '{}' has {} variants; name one of them: {}", name_or_path,
-                                 cases.size(), listed(cases)));
+    const bool is_file = fs::is_regular_file(name_or_path);
+    throw InputError(fmt::format(
+        "case: '{}' has {} variants; name one of them: {}{}", name_or_path, cases.size(), listed(cases),
+        is_file ? fmt::format("; as in {}/{}", name_or_path, cases.front().name) : ""));
   }
   return std::move(cases.front());
 }

@@ -10,7 +10,7 @@ namespace sandglass::verification::simulated_block {
 
 /// A case without a mesh; `driven` is the table of the imposed motion.
 inline std::string text_of(const std::string& driven, const std::string& answer = "dynamic") {
-  const std::string dynamics = "[dynamics]\nduration = 0.2\ntime_step = 1e-3\ndamping = 3.0\nframes = 1\n";
+  const std::string dynamics = "[dynamics]\nduration = 0.2\ndamping = 3.0\nframes = 1\n";
   return "[case]\nname = \"block\"\nrequirement = \"A block is moved.\"\nanswer = \"" + answer +
          "\"\n"
          "[material]\nlaw = \"neo-hookean\"\nyoung_modulus = 3000.0\npoisson_ratio = 0.45\ndensity = 1000.0\n"

@@ -84,7 +84,7 @@ class Body:
         method: str | None = ...,
         kappa: float | None = ...,
         damping: float | None = ...,
-        step_fraction: float = ...,
+        step_fraction: float | None = ...,
         threads: int = ...,
         device: str = ...,
     ) -> Simulation: ...
@@ -96,7 +96,7 @@ class Body:
         method: str | None = ...,
         kappa: float | None = ...,
         damping: float | None = ...,
-        step_fraction: float = ...,
+        step_fraction: float | None = ...,
         threads: int = ...,
     ) -> Batch: ...
     def save(self, file: _Path) -> None: ...
@@ -178,7 +178,7 @@ class Simulation:
         method: str | None = ...,
         kappa: float | None = ...,
         damping: float | None = ...,
-        step_fraction: float = ...,
+        step_fraction: float | None = ...,
         threads: int = ...,
         device: str = ...,
     ) -> None: ...
@@ -193,7 +193,7 @@ class Simulation:
         method: str | None = ...,
         kappa: float | None = ...,
         damping: float | None = ...,
-        step_fraction: float = ...,
+        step_fraction: float | None = ...,
         threads: int = ...,
         device: str = ...,
         element_sets: Mapping[str, ArrayLike] = ...,

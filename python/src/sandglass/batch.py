@@ -75,9 +75,11 @@ class Batch:
 
         `stiffness`: factors of all moduli, (bodies,). `materials`: parameters of laws, arrays
         (bodies,); see `set_parameters`. `factors`: load factors, (bodies,), which are
-        reached linearly at the end, or (bodies, frames), at the end of each frame; without them no
-        load acts. `driven`: a dict from driven sets to targets at the end of each frame, (bodies,
-        frames, 3) or (bodies, frames, nodes of the set, 3), m.
+        reached linearly at the end, or (bodies, frames), at the end of each frame; they scale loads
+        and imposed displacements and rotations, which without them are zero, except loads with a
+        curve of their own (`times`, `formula`), which follow it. `driven`: a dict from driven sets
+        to targets at the end of each frame, (bodies, frames, 3) or (bodies, frames, nodes of the
+        set, 3), m.
 
         Returns an array (bodies, frames, n, 3), in the numbering of the mesh.
         """

@@ -159,7 +159,7 @@ class Body:
         method=None,
         kappa=None,
         damping=None,
-        step_fraction=0.9,
+        step_fraction=None,
         threads=1,
         device="cpu",
     ):
@@ -180,7 +180,7 @@ class Body:
         method=None,
         kappa=None,
         damping=None,
-        step_fraction=0.9,
+        step_fraction=None,
         threads=1,
     ):
         """An `sg.Batch` of this number of bodies, which move side by side and each in its own way.
