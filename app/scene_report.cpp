@@ -32,11 +32,15 @@ std::string plural(std::size_t count, std::string_view what) {
 }
 
 std::string extent_text(const std::vector<int>& nodes, const NodalField& points) {
-  const auto [low, high] = bounding_box(values_at(nodes, points));
+  auto [low, high] = bounding_box(values_at(nodes, points));
+  const auto [first, last] = bounding_box(points);
+  const double roundoff = 1e-12 * distance(first, last);
   std::vector<std::string> words;
   for (std::size_t i = 0; i < 3; ++i) {
-    words.push_back(low[i] == high[i] ? fmt::format("{} = {:.9g}", "xyz"[i], low[i])
-                                      : fmt::format("{} {:.9g} to {:.9g}", "xyz"[i], low[i], high[i]));
+    for (double* end : {&low[i], &high[i]}) *end = std::abs(*end) < roundoff ? 0.0 : *end;
+    words.push_back(high[i] - low[i] <= roundoff
+                        ? fmt::format("{} = {:.9g}", "xyz"[i], low[i])
+                        : fmt::format("{} {:.9g} to {:.9g}", "xyz"[i], low[i], high[i]));
   }
   return fmt::format("{} m", fmt::join(words, ", "));
 }

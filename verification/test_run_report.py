@@ -182,7 +182,7 @@ def test_much_hourglass_energy_is_warned_of_and_the_remedy_has_none(block):
     outcome = sandglass("run", block)
     found = re.search(r"hourglass energy is (\S+) % of strain energy, above 10 %", outcome.stderr)
     assert float(found[1]) > 5.0
-    method = re.search(r"compare with --method (\S+),", outcome.stderr)[1]
+    method = re.search(r"with --method (\S+),", outcome.stderr)[1]
     other = sandglass("run", block, "-m", method, code=0)
     assert not other.stderr
     assert "hourglass energy is" not in sandglass("run", ROOT / "cases" / "column.toml").stderr

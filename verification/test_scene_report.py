@@ -8,6 +8,10 @@ from command_line import BARE, BLOCK, dynamic, sandglass
 
 CORNERS = [(x, y, z) for z in (0.0, 0.1) for y in (0.0, 0.1) for x in (0.0, 0.1)]
 ORDER = (1, 2, 4, 3, 5, 6, 8, 7)
+# The block between plates without friction.
+BETWEEN_PLATES = BARE.replace("0.0]\n\n", '0.0]\ncomponents = "z"\n\n').replace(
+    "[0.02, 0.0, 0.01]", '[0.0, 0.0, 0.01]\ncomponents = "z"'
+)
 
 
 def two_cubes(gap, unit=1.0):
@@ -53,9 +57,7 @@ def test_loads_that_end_before_their_tables_are_noted(tmp_path):
 @pytest.mark.parametrize("command", ["run", "verify", "choose"])
 def test_a_cube_between_frictionless_plates_is_free_to_slide(tmp_path, command):
     case = tmp_path / "only-z.toml"
-    case.write_text(
-        BARE.replace("0]\n", '0]\ncomponents = "z"\n').replace("1]\n", '1]\ncomponents = "z"\n')
-    )
+    case.write_text(BETWEEN_PLATES)
     assert case.read_text().count("components") == 2
     said = refusal(case, command)
     assert str(case) in said
@@ -66,7 +68,7 @@ def test_a_cube_between_frictionless_plates_is_free_to_slide(tmp_path, command):
 def test_the_nodes_that_are_named_hold_the_body(tmp_path):
     """Each as a set of its own, in the components named: with them the run finishes."""
     case = tmp_path / "only-z.toml"
-    text = BARE.replace("0]\n", '0]\ncomponents = "z"\n').replace("1]\n", '1]\ncomponents = "z"\n')
+    text = BETWEEN_PLATES
     case.write_text(text)
     named = re.findall(r"([xyz]+) of node \d+ at \((\S+), (\S+), (\S+)\) m", refusal(case))
     assert sum(len(components) for components, *_ in named) == 3  # as many as are free

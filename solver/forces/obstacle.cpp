@@ -49,12 +49,12 @@ bool are_behind(const Vector& normal, const std::vector<Quadrilateral>& faces, c
   for (const Quadrilateral& face : faces) {
     for (const int node : face) lowest = std::min(lowest, height(node));
   }
-  Vector sum{};
+  Triple<double> sum{};
   for (const Quadrilateral& face : faces) {
     if (std::ranges::none_of(face, [&](int node) { return height(node) <= lowest + rounding; })) continue;
     for (const FacePoint& gauss : gauss_points_of(corners_of(points, face))) sum += gauss.normal;
   }
-  return dot(normal, sum) > 0.5 * length(sum);
+  return dot(normal, {sum(0, 0), sum(1, 0), sum(2, 0)}) > 0.5 * std::sqrt(double_dot(sum, sum));
 }
 
 }  // namespace

@@ -57,7 +57,8 @@ void add_ties(const Scene& scene, const NodeTie& rule, std::map<int, Tie>& ties)
       refuse(scene, rule, nodes[n],
              fmt::format("is outside all elements of '{}'; it must be in one", rule.elements));
     if (is_driven(nodes[n]))
-      refuse(scene, rule, nodes[n], "is also driven; a tied node follows only the elements");
+      refuse(scene, rule, nodes[n],
+             "is also driven; a tied node follows only the elements; allowed: a set without driven nodes");
     Tie tie{nodes[n], shares_of(mesh.cells[element], parent)};
     if (!ties.emplace(nodes[n], std::move(tie)).second)
       refuse(scene, rule, nodes[n], "is tied by two tables; allowed: one");
