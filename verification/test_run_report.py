@@ -193,7 +193,9 @@ def test_damping_that_shortens_steps_is_named(block):
     message = ["damping allows 1e-06 s", "remedy: damp less"]
     sandglass("run", block, code=3, message=message)
     block.write_text(dynamic(BARE, duration=0.2, damping=1e6, time_step=1e-5))
-    sandglass("run", block, code=2, message="above the stable step 1e-06 s, set by damping at step 0")
+    sandglass(
+        "run", block, code=2, message="above the stable step 1e-06 s, set by damping at step 0"
+    )
 
 
 def test_hourglass_modes_of_a_rigid_motion_are_rounding(tmp_path):
