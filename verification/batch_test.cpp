@@ -28,7 +28,7 @@ std::string text_with(const std::array<std::string, 2>& materials) {
          "[element_sets]\nlow = { z = [0.0, 0.1] }\n"
          "[sets]\nfoot = { z = [0.0, 0.0] }\nside = { x = [0.1, 0.1] }\nmiddle = { z = [0.1, 0.1] }\n"
          "[[displacement]]\nset = \"foot\"\nvalue = [0.0, 0.0, 0.0]\n"
-         "[[displacement]]\nset = \"head\"\nvalue = [0.02, 0.01, 0.03]\ncomponents = \"xz\"\n"
+         "[[displacement]]\nset = \"head\"\nvalue = [0.02, 0.0, 0.03]\ncomponents = \"xz\"\n"
          "[[force]]\nset = \"side\"\ntotal = [0.05, 0.0, 0.0]\n"
          "[[force]]\nset = \"side\"\ntotal = [0.0, 0.02, 0.0]\ntimes = [0.0, 0.05]\nfactors = "
          "[0.5, 1.5]\n"

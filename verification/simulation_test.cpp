@@ -20,9 +20,9 @@ using simulated_block::block, simulated_block::pulled, simulated_block::text_of;
 constexpr double step = 1e-3;  // s; stable for the blocks below
 constexpr int steps = 200;
 
-/// The motion of a dynamic run.
+/// The motion of a dynamic run in these steps; the text ends with the table [dynamics].
 Motion motion_of(const std::string& text, const MethodChoice& choice) {
-  const Scene scene = read_scene(text, checked(block()));
+  const Scene scene = read_scene(text + "time_step = 1e-3\n", checked(block()));
   const Model model(scene, choice);
   Observer nobody;
   return integrate(model, nobody);
