@@ -249,7 +249,7 @@ def test_errors_are_exceptions_with_the_solvers_words(case, body):
         body.move("head", [1.0, 2.0])
     with pytest.raises(TypeError):
         body.move("head", "far")
-    body.move("head", [0, 0, -0.25])
+    body.move("head", [0, 0, -5.0])
     with pytest.raises(sandglass.ComputationError, match="det F must be positive"):
         body.advance(0.1)
 

@@ -96,9 +96,11 @@ class Follower:
         compiler = "c++ -std=c++20 -O0 -fno-math-errno -Wno-psabi"
         compiler += " -Isolver -Isuite -Iverification -isystem /usr/include/eigen3"
         compiler = f"ccache {compiler}" if shutil.which("ccache") else compiler
-        for source in (f"verification/{name}.cpp", "verification/support/dense_matrix.cpp"):
+        dense = "verification/support/dense_matrix.cpp", "solver/math/dense.cpp"
+        for source in (f"verification/{name}.cpp", *dense):
             self.run(f"{compiler} -c {source} -o {Path(source).stem}.o")
-        self.run(f"c++ {name}.o dense_matrix.o -lgtest_main -lgtest -lfmt -o {name}")
+        objects = f"{name}.o dense_matrix.o dense.o"
+        self.run(f"c++ {objects} -lgtest_main -lgtest -lfmt -o {name}")
         assert int(re.search(r"PASSED\s+\] (\d+) test", self.run(f"./{name}"))[1]) >= 4
 
     def only_what_was_added(self, path):
