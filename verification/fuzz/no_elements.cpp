@@ -3,6 +3,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <string_view>
 #include <tuple>
 
 #include "assembly/method_entry.hpp"
@@ -41,6 +42,15 @@ template State<float> state_at(const InternalForce<float>&, const NodalField&);
 template <class Method, class Number>
 Kernels<Number> kernels() {
   return {};
+}
+
+template <>
+AssembleBatch<Pack<double>>* batch_kernels<Pack<double>>(std::string_view /*method*/) {
+  return nullptr;
+}
+template <>
+AssembleBatch<Pack<float>>* batch_kernels<Pack<float>>(std::string_view /*method*/) {
+  return nullptr;
 }
 
 namespace {

@@ -2,9 +2,11 @@
 /// thread sanitizer need not check kernels that take minutes.
 
 #include <array>
+#include <string_view>
 #include <tuple>
 
 #include "assembly/assemble.hpp"
+#include "assembly/method_entry.hpp"
 #include "element/methods.hpp"
 
 namespace sandglass {
@@ -13,6 +15,15 @@ template <class Method, class Number>
 Kernels<Number> kernels() {
   if constexpr (std::is_same_v<Number, Pack<double>>) return {.assemble = &assemble<Method, Number>};
   return {};
+}
+
+template <>
+AssembleBatch<Pack<double>>* batch_kernels<Pack<double>>(std::string_view /*method*/) {
+  return nullptr;
+}
+template <>
+AssembleBatch<Pack<float>>* batch_kernels<Pack<float>>(std::string_view /*method*/) {
+  return nullptr;
 }
 
 namespace {
