@@ -51,13 +51,21 @@ class Inputs:
         return {s.name: None if s.cells is None else len(s.cells) for s in self.subjects}
 
     @functools.cached_property
-    def points(self):
-        """The points of the main chart. Raises InputError if one cannot be true."""
+    def _checked(self):
         own = self.verdicts.provenance
         points = make_points(self.verdicts.runs, self.elements, self.measured, own)
         loaded = frozenset(run.case for run in self.verdicts.runs if run.load_in_steps)
-        require_plausible(points, self.measured, own, loaded)
-        return tuple(points)
+        return tuple(points), require_plausible(points, self.measured, own, loaded)
+
+    @property
+    def points(self):
+        """The points of the main chart. Raises InputError if one cannot be true."""
+        return self._checked[0]
+
+    @property
+    def disturbed(self):
+        """The points that were measured while the machine was busy."""
+        return self._checked[1]
 
 
 @dataclass(frozen=True)
@@ -197,6 +205,7 @@ def _of_measured(inputs, palette):
             for program in programs
         },
         "chart_elsewhere": sorted({s.elsewhere(own) for s in others} - {""}),
+        "chart_disturbed": sorted({f"{p.method} ({p.case})" for p in inputs.disturbed}),
         "quantity": QUANTITIES,
         "costs": COSTS,
         "figures": FIGURES,

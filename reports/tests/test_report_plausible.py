@@ -14,6 +14,7 @@ from sandglass_report.plausible import (
     Marks,
     bench_agrees,
     complaints,
+    disturbed,
     seconds_are_those_of_the_step,
     seconds_can_be_waited_for,
     steps_are_of_soft_bodies,
@@ -88,9 +89,19 @@ def test_the_time_of_another_loop_is_noticed():
 
 
 @pytest.mark.parametrize("factor", [0.7, 1.4])
-def test_a_time_that_bench_does_not_have_is_noticed(factor):
+def test_times_that_bench_does_not_have_are_noticed(factor):
     assert broken(sound(), steps_of_bench(1 / 1.25))[0] == set()
     assert broken(sound(), steps_of_bench(factor))[0] == {bench_agrees}
+
+
+@pytest.mark.parametrize(
+    ("factor", "noticed"), [(0.45, True), (0.6, False), (1.7, False), (2.2, True)]
+)
+def test_a_single_time_may_be_disturbed(factor, noticed):
+    first, *others = steps_of_bench()
+    steps = (dataclasses.replace(first, ns=factor * first.ns), *others)
+    assert broken(sound(), steps)[0] == ({bench_agrees} if noticed else set())
+    assert [p.method for p in disturbed(Marks(sound(), steps, TABLE))] == [first.method]
 
 
 def test_the_step_of_another_state_is_noticed():
