@@ -210,9 +210,9 @@ constexpr const char* about_simulation =
 
 The case file is one for `sandglass run`; the body starts undeformed, at rest or with the case's initial velocities.
 Keywords: `precision`, "double" or "float"; `method`, `kappa`, `damping` (1/s) and `step_fraction`, the longest step over
-the stable one, override the case's; a `time_step` of the case is the longest step; `threads` (1); `device="opencl"` takes the steps on another processor, where the
-body stays between calls. Arrays are read-only views of the simulation's own: they show its current state and keep it
-alive. Only one thread may use it at a time; `advance` releases the GIL.)";
+the stable one, override the case's; a `time_step` of the case is the longest step; `threads` (1); `device="opencl"`
+takes the steps on another processor, where the body stays between calls. Arrays are read-only views of the simulation's
+own: they show its current state and keep it alive. Only one thread may use it at a time; `advance` releases the GIL.)";
 
 constexpr const char* about_mesh =
     R"(A simulation on the given mesh.

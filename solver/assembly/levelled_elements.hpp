@@ -221,7 +221,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  /// Runs at every check of a motion, and in every evaluation of some searches.
+  /// Runs at every check of a motion.
   template <class Method, class Element, class HourglassHistory>
   SANDGLASS_HOT_LOOP static Number stiffness_bound(const ElementMotion<Number>& motion,
                                                    const Element& element, const HourglassHistory& remembered,

@@ -53,8 +53,7 @@ struct DynamicsSettings {
         Parameter{&S::duration, "duration", "s", Range::positive(), "simulated time"},
         Parameter{&S::ramp_time, "ramp_time", "s", Range::at_least(0.0),
                   "time in which imposed displacements, and loads without times or formula, grow by the "
-                  "loading curve "
-                  "(10 - 15 s + 6 s^2) s^3 of s = t / ramp_time; 0 means the whole duration",
+                  "loading curve (10 - 15 s + 6 s^2) s^3 of s = t / ramp_time; 0 means the whole duration",
                   false},
         Parameter{&S::time_step, "time_step", "s", Range::at_least(0.0),
                   "fixed step, at most the stable one; 0 chooses step_fraction of the stable one", false},

@@ -1,13 +1,9 @@
 /// Readers make scenes and never compute. Fuzzers leave out the kernels, which take minutes to compile; these
 /// functions are the ones that the linker still needs.
 
-#include <array>
 #include <stdexcept>
-#include <string_view>
-#include <tuple>
 
-#include "assembly/method_entry.hpp"
-#include "element/methods.hpp"
+#include "support/own_kernels.hpp"
 
 namespace sandglass {
 
@@ -43,27 +39,5 @@ template <class Method, class Number>
 Kernels<Number> kernels() {
   return {};
 }
-
-template <>
-AssembleBatch<Pack<double>>* batch_kernels<Pack<double>>(std::string_view /*method*/) {
-  return nullptr;
-}
-template <>
-AssembleBatch<Pack<float>>* batch_kernels<Pack<float>>(std::string_view /*method*/) {
-  return nullptr;
-}
-
-namespace {
-
-/// Instantiates the kernels of all methods, which the list of methods refers to.
-template <class... Method>
-auto kernels_of(TypeList<Method...> /*methods*/) {
-  return std::tuple{std::array{&kernels<KernelOwner<Method>, Pack<double>>...},
-                    std::array{&kernels<KernelOwner<Method>, Pack<float>>...}};
-}
-
-[[gnu::used]] const auto none = kernels_of(Methods{});
-
-}  // namespace
 
 }  // namespace sandglass
